@@ -10,6 +10,8 @@ pub mod start;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use egui::util::undoer::Undoer;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 #[cfg(target_arch = "wasm32")]
 use crate::address;
@@ -58,7 +60,7 @@ pub struct HysteronApp {
     /// Axes of the plots of the last frame, x and y, in English.
     plots: Vec<[String; 2]>,
     /// What saving a file has to say.
-    said: (Sender<String>, Receiver<String>),
+    said: (Sender<Message>, Receiver<Message>),
     /// Where files go that are given away, if not to the user.
     diverted: Option<Sender<GivenFile>>,
     #[cfg(target_arch = "wasm32")]
@@ -159,7 +161,7 @@ impl HysteronApp {
     ///
     /// # Errors
     /// One sentence.
-    pub fn open_link(&mut self, ctx: &egui::Context, text: &str) -> Result<(), String> {
+    pub fn open_link(&mut self, ctx: &egui::Context, text: &str) -> Result<(), Message> {
         let present = self.document();
         let opened = Document::read(text, &self.untouched)
             .and_then(|document| document.check_shape(&self.untouched).map(|()| document))
@@ -172,7 +174,7 @@ impl HysteronApp {
     }
 
     /// Sets everything as in `document`, or nothing.
-    fn apply(&mut self, ctx: &egui::Context, document: &Document) -> Result<(), String> {
+    fn apply(&mut self, ctx: &egui::Context, document: &Document) -> Result<(), Message> {
         let present = self.document();
         let (pages, front, desk) = (&mut self.pages, &mut self.front, &mut self.desk);
         document.apply(ctx, pages, front, desk).inspect_err(|_| {
@@ -210,7 +212,7 @@ impl HysteronApp {
             for recent in page.door.iter().flat_map(Door::opened) {
                 // A link that was refused for want of this file.
                 let wanted = link::not_enclosed(&recent.name);
-                self.notice.take_if(|notice| notice.text() == wanted);
+                self.notice.take_if(|notice| *notice.text() == wanted);
                 self.desk.recent.note(recent);
             }
         }
@@ -302,10 +304,8 @@ impl HysteronApp {
             state[page.id] = own;
         }
         state["ready"] = true.into();
-        state["hint"] = front
-            .and_then(|p| p.view.offer().hint)
-            .map(|h| h.sentence)
-            .into();
+        let hint = front.and_then(|p| p.view.offer().hint);
+        state["hint"] = serde_json::json!(hint.map(|h| h.sentence));
         state["busy"] = busy.into();
         state["page"] = front.map(|p| p.id).into();
         state["frame"] = self.frame.into();
@@ -315,14 +315,10 @@ impl HysteronApp {
         state["language"] = self.language.code().into();
         state["calm"] = self.calm.into();
         state["link"] = self.link().into();
-        state["notice"] = self.notice.as_ref().map(Notice::text).into();
+        state["notice"] = serde_json::json!(self.notice.as_ref().map(Notice::text));
         state["size"] = serde_json::json!(self.size);
-        state["purpose"] = self
-            .desk
-            .purpose
-            .as_ref()
-            .map(|p| p.sentence.clone())
-            .into();
+        let purpose = self.desk.purpose.as_ref();
+        state["purpose"] = serde_json::json!(purpose.map(|p| &p.sentence));
         state["plots"] = serde_json::json!(self.plots);
         state["targets"] = self.desk.targets.to_json();
         state
@@ -379,7 +375,11 @@ impl HysteronApp {
         if count > 1 {
             let name = file.path().file_name().unwrap_or_default();
             let name = name.to_string_lossy();
-            let saying = format!("Only one of the {count} files is opened: {name}.");
+            let saying = msg!(
+                "Only one of the {} files is opened: {}.",
+                count,
+                Message::name(name)
+            );
             self.notice = Some(Notice::done(ctx, saying));
         }
     }

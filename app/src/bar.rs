@@ -1,6 +1,8 @@
 //! The bar at the top: pages, undo, link, look.
 
 use egui::Ui;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use crate::command::Command;
 use crate::desk::Desk;
@@ -50,7 +52,7 @@ impl Bar<'_> {
         ui.horizontal(|ui| {
             if pages + more > room {
                 let title = self.pages.get(self.front).map_or("Hysteron", |p| p.1);
-                let menu = ui.menu_button(tr(format!("Menu: {title}")), |ui| {
+                let menu = ui.menu_button(tr(msg!("Menu: {}", title)), |ui| {
                     self.pages_ui(ui, targets, commands);
                     ui.separator();
                     self.tools_ui(ui, targets, commands);
@@ -114,7 +116,7 @@ impl Bar<'_> {
             ui.close();
         }
         let export = ui.menu_button(tr("Export"), |ui| {
-            let mut item = |label: String, name: &str, command| {
+            let mut item = |label: Message, name: &str, command| {
                 let button = ui.button(tr(label));
                 targets.note(format!("export:{name}"), ui, &button);
                 if button.clicked() {
@@ -122,11 +124,11 @@ impl Bar<'_> {
                     ui.close();
                 }
             };
-            let [svg, png] = ["SVG", "PNG"].map(|kind| format!("Picture of this page ({kind})"));
+            let [svg, png] = ["SVG", "PNG"].map(|kind| msg!("Picture of this page ({})", kind));
             item(svg, "svg", Command::SaveSvg);
             item(png, "png", Command::SavePng);
             for table in self.tables {
-                let label = format!("Data: {table} (CSV)");
+                let label = msg!("Data: {} (CSV)", table);
                 item(label, table, Command::SaveTable(table));
             }
         });

@@ -1,6 +1,8 @@
 //! Everything that is set in the app, as one plain value: links, undo and the autosave hold nothing else.
 
 use hysteron_core::explore::ExploreInput;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_work::enclosed::is_enclosed;
 use serde_json::{Value, json};
 
@@ -69,7 +71,7 @@ impl Document {
     ///
     /// # Errors
     /// One sentence.
-    pub fn read(text: &str, defaults: &Self) -> Result<Self, String> {
+    pub fn read(text: &str, defaults: &Self) -> Result<Self, Message> {
         let (page, settings) = link::read(text, &defaults.settings)?;
         Ok(Self { page, settings })
     }
@@ -78,7 +80,7 @@ impl Document {
     ///
     /// # Errors
     /// One sentence.
-    pub fn check_shape(&self, defaults: &Self) -> Result<(), String> {
+    pub fn check_shape(&self, defaults: &Self) -> Result<(), Message> {
         link::check_shape(&self.settings, &defaults.settings)
     }
 
@@ -103,10 +105,10 @@ impl Document {
         pages: &mut [Page],
         front: &mut usize,
         desk: &mut Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         let Some(index) = pages.iter().position(|p| p.id == self.page) else {
             let known: Vec<&str> = pages.iter().map(|p| p.id).collect();
-            return Err(format!(
+            return Err(msg!(
                 "This link is about a page that does not exist; there are {}.",
                 known.join(", ")
             ));
@@ -114,10 +116,10 @@ impl Document {
         let relay_loop: ExploreInput = parsed(&self.settings[LOOP])?;
         relay_loop
             .validate()
-            .map_err(|e| format!("This loop is not possible: {e}."))?;
+            .map_err(|e| msg!("This loop is not possible: {}.", e))?;
         let lesson: Option<String> = parsed(&self.settings[LESSON])?;
         if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
-            return Err("This link is about a lesson that does not exist.".to_owned());
+            return Err("This link is about a lesson that does not exist.".into());
         }
         let zooms = pages
             .iter()

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
 use hysteron_core::user_model::UserModel;
 
 use crate::recent::Recent;
@@ -136,7 +137,7 @@ impl From<&Enclosed> for Held {
 pub struct Entrance {
     sender: Sender<Read>,
     /// Why none can be asked for.
-    refused: Sender<String>,
+    refused: Sender<Message>,
 }
 
 /// The way into a page for files, and what it has taken of them.
@@ -177,7 +178,7 @@ pub struct Files {
     /// Where they come in.
     pub entrance: Entrance,
     receiver: Receiver<Read>,
-    refused: Receiver<String>,
+    refused: Receiver<Message>,
     /// The last one that has arrived: nobody knows yet whether it is what its page takes.
     arrived: Option<Recent>,
     /// Where it is said which ones were taken.
@@ -272,7 +273,7 @@ impl Files {
     }
 
     /// Why no file could be asked for, once.
-    pub fn refused(&mut self) -> Option<String> {
+    pub fn refused(&mut self) -> Option<Message> {
         self.refused.try_recv().ok()
     }
 }
@@ -346,7 +347,7 @@ impl Entrance {
             let picked = dialog.pick_file().await;
             // The dialog of a browser is always there.
             if picked.is_none() && !cfg!(target_arch = "wasm32") && asked.elapsed() < AT_ONCE {
-                let _ = refused.send(NO_DIALOG.to_owned());
+                let _ = refused.send(NO_DIALOG.into());
                 ctx.request_repaint();
             }
             if let Some(file) = picked {

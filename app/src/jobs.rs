@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
+use hysteron_core::message::Message;
 use hysteron_core::user_model::UserModel;
 
 pub use hysteron_work::tasks::News;
@@ -28,8 +29,8 @@ impl<T: Runs> Job<T> {
     /// doing.
     pub fn end(
         &mut self,
-        mut progress: impl FnMut(f64, String),
-    ) -> Option<Result<T::Report, String>> {
+        mut progress: impl FnMut(f64, Message),
+    ) -> Option<Result<T::Report, Message>> {
         self.news().into_iter().find_map(|news| match news {
             News::Progress(share, text) => {
                 progress(share, text);
@@ -44,8 +45,8 @@ impl<T: Runs> Job<T> {
 /// [`Job::end`] of the job in a place, which is free then.
 pub fn ended<T: Runs>(
     place: &mut Option<Job<T>>,
-    progress: impl FnMut(f64, String),
-) -> Option<Result<T::Report, String>> {
+    progress: impl FnMut(f64, Message),
+) -> Option<Result<T::Report, Message>> {
     let end = place.as_mut()?.end(progress)?;
     *place = None;
     Some(end)
@@ -116,6 +117,8 @@ mod platform {
     use std::cell::{Cell, RefCell};
     use std::rc::Rc;
 
+    use hysteron_core::message::Message;
+    use hysteron_core::msg;
     use js_sys::{Array, Uint8Array};
     use wasm_bindgen::prelude::*;
     use web_sys::{ErrorEvent, MessageEvent, Worker, WorkerOptions, WorkerType};
@@ -148,9 +151,8 @@ mod platform {
         let idle = IDLE.take();
         let (found, worker) = (idle.is_some(), idle.map_or_else(start_worker, Some));
         let Some(worker) = worker else {
-            news.borrow_mut().push(News::Failed(
-                "the browser refuses to start a worker".to_owned(),
-            ));
+            news.borrow_mut()
+                .push(News::Failed("the browser refuses to start a worker".into()));
             return Job {
                 worker,
                 news,
@@ -173,15 +175,17 @@ mod platform {
                 }
             } else {
                 let said = unpack(&Uint8Array::new(&data).to_vec());
-                inbox.borrow_mut().push(said.unwrap_or_else(News::Failed));
+                inbox
+                    .borrow_mut()
+                    .push(said.unwrap_or_else(|error| News::Failed(Message::name(error))));
             }
             repaint.request_repaint();
         });
         let (inbox, repaint) = (Rc::clone(&news), ctx);
         let on_error = Closure::<dyn FnMut(ErrorEvent)>::new(move |event: ErrorEvent| {
-            inbox.borrow_mut().push(News::Failed(format!(
+            inbox.borrow_mut().push(News::Failed(msg!(
                 "the worker stopped: {}",
-                event.message()
+                Message::name(event.message())
             )));
             repaint.request_repaint();
         });
@@ -214,7 +218,7 @@ mod platform {
                 // It is there: it has spoken.
                 let _ = worker.post_message_with_transfer(&message, &moved);
             }
-            Err(error) => news.borrow_mut().push(News::Failed(error)),
+            Err(error) => news.borrow_mut().push(News::Failed(Message::name(error))),
         }
     }
 

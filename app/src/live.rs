@@ -1,5 +1,6 @@
 //! What follows from what is set, computed anew while that changes.
 
+use hysteron_core::message::Message;
 use hysteron_work::tasks::Task;
 
 use crate::jobs::{Job, Runs, ended};
@@ -13,7 +14,7 @@ pub struct Live<I, T: Task> {
     /// The last result; it stays while the next is computed.
     shown: Option<(I, Box<T::Report>)>,
     /// Why the last job came to none.
-    message: Option<String>,
+    message: Option<Message>,
 }
 
 impl<I, T: Task> Default for Live<I, T> {
@@ -65,7 +66,7 @@ impl<I: Clone + PartialEq, T: Runs> Live<I, T> {
         self.is_busy() && self.asked.as_ref() != shown
     }
 
-    pub fn message(&self) -> Option<&str> {
-        self.message.as_deref()
+    pub fn message(&self) -> Option<&Message> {
+        self.message.as_ref()
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::language::tr;
 use crate::theme;
+use hysteron_core::message::Message;
 
 /// Time that a good word stays, s; a refusal stays until it is dismissed.
 const SECONDS: f64 = 3.0;
@@ -9,14 +10,14 @@ const SECONDS: f64 = 3.0;
 /// One sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    text: String,
+    text: Message,
     /// When it goes by itself, s on egui's clock.
     until: Option<f64>,
 }
 
 impl Notice {
     /// Something went well.
-    pub fn done(ctx: &egui::Context, text: impl Into<String>) -> Self {
+    pub fn done(ctx: &egui::Context, text: impl Into<Message>) -> Self {
         Self {
             text: text.into(),
             until: Some(ctx.input(|i| i.time) + SECONDS),
@@ -24,7 +25,7 @@ impl Notice {
     }
 
     /// Something was refused.
-    pub fn refused(text: impl Into<String>) -> Self {
+    pub fn refused(text: impl Into<Message>) -> Self {
         Self {
             text: text.into(),
             until: None,
@@ -32,7 +33,7 @@ impl Notice {
     }
 
     /// The sentence.
-    pub fn text(&self) -> &str {
+    pub fn text(&self) -> &Message {
         &self.text
     }
 }

@@ -1,5 +1,6 @@
 //! What a page is to the app around it.
 
+use hysteron_core::message::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -87,7 +88,7 @@ pub trait Settable {
         ctx: &egui::Context,
         settings: Self::Settings,
         desk: &Desk,
-    ) -> Result<(), String>;
+    ) -> Result<(), Message>;
 }
 
 /// [`Settable`] as the app around a page knows it, whatever its settings are.
@@ -98,7 +99,7 @@ pub trait Kept {
     ///
     /// # Errors
     /// One sentence where it cannot be; then nothing is changed.
-    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), String>;
+    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), Message>;
 }
 
 impl<T: Settable> Kept for T {
@@ -106,7 +107,7 @@ impl<T: Settable> Kept for T {
         serde_json::json!(self.set_to())
     }
 
-    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), String> {
+    fn set(&mut self, ctx: &egui::Context, settings: &Value, desk: &Desk) -> Result<(), Message> {
         self.take(ctx, parsed(settings)?, desk)
     }
 }
@@ -136,21 +137,21 @@ impl<'a> Offer<'a> {
 
 /// What to try next: a sentence, and what does it at a press; some things only the user can do.
 pub struct Hint {
-    pub sentence: String,
+    pub sentence: Message,
     pub commands: Vec<Command>,
 }
 
 impl Hint {
     /// One that a link shows.
-    pub fn open(sentence: &str, link: &str) -> Self {
+    pub fn open(sentence: &'static str, link: &str) -> Self {
         Self {
-            sentence: sentence.to_owned(),
+            sentence: sentence.into(),
             commands: vec![Command::OpenLink(link.to_owned())],
         }
     }
 
     /// One that the app cannot do.
-    pub fn say(sentence: impl Into<String>) -> Self {
+    pub fn say(sentence: impl Into<Message>) -> Self {
         Self {
             sentence: sentence.into(),
             commands: Vec::new(),

@@ -10,6 +10,9 @@ use std::{
 use std::sync::mpsc::Sender;
 use std::time::Duration;
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
+
 /// A dialog that ends within this time was never shown: nobody closes one so fast.
 pub const AT_ONCE: Duration = Duration::from_millis(300);
 
@@ -51,7 +54,7 @@ struct File {
 
 /// Lets the user save `document`; a sentence says so or why not. Nothing is said where the user changes
 /// their mind.
-pub fn save(ctx: &egui::Context, document: Document, said: &Sender<String>) {
+pub fn save(ctx: &egui::Context, document: Document, said: &Sender<Message>) {
     let file = File {
         name: document.name,
         kind: document.kind,
@@ -62,7 +65,7 @@ pub fn save(ctx: &egui::Context, document: Document, said: &Sender<String>) {
 }
 
 /// Lets the user save a picture of pixels, in the same way.
-pub fn save_png(ctx: &egui::Context, name: &str, bytes: Vec<u8>, said: &Sender<String>) {
+pub fn save_png(ctx: &egui::Context, name: &str, bytes: Vec<u8>, said: &Sender<Message>) {
     let file = File {
         name: format!("{name}.png"),
         kind: "Picture",
@@ -73,7 +76,7 @@ pub fn save_png(ctx: &egui::Context, name: &str, bytes: Vec<u8>, said: &Sender<S
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-fn save_file(ctx: &egui::Context, document: File, said: &Sender<String>) {
+fn save_file(ctx: &egui::Context, document: File, said: &Sender<Message>) {
     let (ctx, said) = (ctx.clone(), said.clone());
     let ending = document
         .name
@@ -89,8 +92,11 @@ fn save_file(ctx: &egui::Context, document: File, said: &Sender<String>) {
                 Some(file) => {
                     let name = file.file_name();
                     match file.write(&document.bytes).await {
-                        Ok(()) => format!("Saved as {name}."),
-                        Err(error) => format!("{name} cannot be written: {error}"),
+                        Ok(()) => msg!("Saved as {}.", Message::name(name)),
+                        Err(error) => {
+                            let cause = Message::name(error.to_string());
+                            msg!("{} cannot be written: {}", Message::name(name), cause)
+                        }
                     }
                 }
                 None if asked.elapsed() < AT_ONCE => unasked(&document),
@@ -105,15 +111,19 @@ fn save_file(ctx: &egui::Context, document: File, said: &Sender<String>) {
 
 /// Saves a file where no dialog can be shown; a sentence says where, or why not.
 #[cfg(not(target_arch = "wasm32"))]
-fn unasked(document: &File) -> String {
+fn unasked(document: &File) -> Message {
     let home = std::env::home_dir().map(|home| home.join("Downloads"));
     let folder = home.filter(|folder| folder.is_dir());
     let folder = folder.or_else(|| std::env::current_dir().ok());
     match keep(&folder.unwrap_or_default(), &document.name, &document.bytes) {
-        Ok(path) => format!("No dialog can be shown here: saved as {}.", path.display()),
-        Err(error) => format!(
-            "No dialog can be shown here, and {} cannot be written: {error}",
-            document.name
+        Ok(path) => msg!(
+            "No dialog can be shown here: saved as {}.",
+            Message::name(path.display().to_string())
+        ),
+        Err(error) => msg!(
+            "No dialog can be shown here, and {} cannot be written: {}",
+            Message::name(&document.name),
+            Message::name(error.to_string())
         ),
     }
 }
@@ -135,11 +145,11 @@ fn keep(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
 }
 
 #[cfg(target_arch = "wasm32")]
-fn save_file(ctx: &egui::Context, document: File, said: &Sender<String>) {
+fn save_file(ctx: &egui::Context, document: File, said: &Sender<Message>) {
     let name = document.name.clone();
     let text = match download(&document) {
-        Ok(()) => format!("{name} is downloaded."),
-        Err(_) => format!("The browser refuses to save {name}."),
+        Ok(()) => msg!("{} is downloaded.", Message::name(name)),
+        Err(_) => msg!("The browser refuses to save {}.", Message::name(name)),
     };
     let _ = said.send(text);
     ctx.request_repaint();

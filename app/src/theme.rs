@@ -2,7 +2,7 @@
 
 use egui::Color32;
 
-use crate::language::{tr, tr_number};
+use crate::language::{Said, tr, tr_number};
 
 /// What was measured.
 pub const MEASURED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
@@ -241,14 +241,14 @@ pub fn grid(visuals: &egui::Visuals) -> Color32 {
 pub const ANSWER: f32 = 24.0;
 
 /// The large answer of a page.
-pub fn answer_ui(ui: &mut egui::Ui, text: &str) {
+pub fn answer_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
     let text = egui::RichText::new(tr(text)).size(ANSWER).strong();
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
 }
 
 /// The same while the next one is computed for what is set now: it is fainter, and says so.
-pub fn answer_of_before_ui(ui: &mut egui::Ui, text: &str) {
+pub fn answer_of_before_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
     let color = ui.visuals().weak_text_color();
     let text = egui::RichText::new(tr(text)).size(ANSWER).color(color);
     let answer = ui.add(egui::Label::new(text).wrap());

@@ -7,6 +7,8 @@ use crate::limit_cycle::{
     Cycle, ExactCycle, Harmonic, Intersection, LongRun, Outcome, Prediction, Trust, dominant,
     harmonics, predict, typical_frequency,
 };
+use crate::message::{Message, fixed, says};
+use crate::msg;
 use crate::plant::{PlantError, StateSpace, TransferFunction, presets};
 use crate::relay::{Relay, RelayError};
 use crate::simulate::{Noise, Options, SimulateError, Trajectory, run, simulate};
@@ -39,18 +41,12 @@ impl Default for ExploreInput {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExploreError {
     /// The plant.
-    #[error(transparent)]
     Plant(#[from] PlantError),
     /// The relay.
-    #[error(transparent)]
     Relay(#[from] RelayError),
     /// The noise or the run.
-    #[error(transparent)]
     Simulate(#[from] SimulateError),
     /// A lag beside which the plant is over in no time: what follows it would be computed for minutes.
-    #[error(
-        "its dead time and delay are {lag:.2e} s, where its fastest pole allows {most:.2e} s at most"
-    )]
     Lag {
         /// Dead time and delay, s.
         lag: f64,
@@ -58,12 +54,30 @@ pub enum ExploreError {
         most: f64,
     },
     /// The noise is no size.
-    #[error("its noise must be 0 or more")]
     NoiseSize,
     /// The noise changes too fast to be simulated, or hardly ever.
-    #[error("its noise must change every 0.001 to 1000 s")]
     NoiseInterval,
 }
+
+impl ExploreError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Plant(error) => error.message(),
+            Self::Relay(error) => error.message(),
+            Self::Simulate(error) => error.message(),
+            Self::Lag { lag, most } => msg!(
+                "its dead time and delay are {} s, where its fastest pole allows {} s at most",
+                format!("{:.2e}", lag),
+                format!("{:.2e}", most)
+            ),
+            Self::NoiseSize => "its noise must be 0 or more".into(),
+            Self::NoiseInterval => "its noise must change every 0.001 to 1000 s".into(),
+        }
+    }
+}
+
+says!(ExploreError);
 
 /// What there is to see.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,9 +105,9 @@ pub struct ExploreData {
     /// How far the describing function can be trusted here.
     pub trust: Trust,
     /// The answer in a sentence.
-    pub text: String,
+    pub text: Message,
     /// Whether the oscillation lasts, in words.
-    pub stability: String,
+    pub stability: Message,
     /// Amplitude as it grows or fades in the simulation: `[t, a]`, half the distance of neighbouring
     /// extrema of the output, at the later one.
     pub swing: Vec<[f64; 2]>,
@@ -285,53 +299,54 @@ fn switch_rate(run: &Trajectory, from: f64) -> Option<f64> {
     rate.is_finite().then_some(rate)
 }
 
-fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> String {
+fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> Message {
     let Some(cycle) = exact else {
         let rests = prediction.existence.filter(|e| !e.holds);
         return rests.map_or_else(
-            || "There is no exact cycle with two switches a period.".to_owned(),
+            || "There is no exact cycle with two switches a period.".into(),
             |e| {
-                format!(
-                    "No cycle: with the relay held, the output goes to {:.3} or {:.3}, which is not beyond both thresholds.",
-                    e.equilibria[0], e.equilibria[1]
+                msg!(
+                    "No cycle: with the relay held, the output goes to {} or {}, which is not beyond both thresholds.",
+                    fixed(e.equilibria[0], 3),
+                    fixed(e.equilibria[1], 3)
                 )
             },
         );
     };
-    let verdict = match cycle.cycle.stable {
-        Some(true) => "Stable",
-        Some(false) => "Unstable",
-        None => "Its stability is not known",
+    let stable = cycle.cycle.stable;
+    let verdict = match (stable, cycle.multiplier) {
+        (_, Some(m)) => {
+            let verdict = match stable {
+                Some(true) => "Stable",
+                Some(false) => "Unstable",
+                None => "Its stability is not known",
+            };
+            let way = if m < 1.0 { "shrinks" } else { "grows" };
+            let words = format!("{verdict}: a small disturbance {way} to {{}} in one period.");
+            Message::Words(words.into(), vec![percent(m)])
+        }
+        (Some(true), None) => "Stable.".into(),
+        (Some(false), None) => "Unstable.".into(),
+        (None, None) => "Its stability is not known.".into(),
     };
-    let way = match cycle.multiplier {
-        Some(m) if m < 1.0 => "shrinks",
-        _ => "grows",
-    };
-    let rate = cycle.multiplier.map_or_else(String::new, |m| {
-        format!(" a small disturbance {way} to {} in one period", percent(m))
-    });
     let others = prediction.exact.len().saturating_sub(1);
     let rest = match others {
-        0 => String::new(),
-        1 => " One more exact cycle exists.".to_owned(),
-        n => format!(" {n} more exact cycles exist."),
+        0 => Message::default(),
+        1 => "One more exact cycle exists.".into(),
+        n => msg!("{} more exact cycles exist.", n),
     };
-    if rate.is_empty() {
-        format!("{verdict}.{rest}")
-    } else {
-        format!("{verdict}:{rate}.{rest}")
-    }
+    verdict.and(rest)
 }
 
 /// A share in per cent, with as many digits as are read.
-pub fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> Message {
     let value = 100.0 * share;
     if value < 0.01 {
-        "less than 0.01 %".to_owned()
+        "less than 0.01 %".into()
     } else if value < 1.0 {
-        format!("{value:.2} %")
+        format!("{value:.2} %").into()
     } else {
-        format!("{value:.0} %")
+        format!("{value:.0} %").into()
     }
 }
 

@@ -1,6 +1,8 @@
 //! The relay loop of the paper's Figs. 3, 4 and 5: what they show, and whether it is so.
 
 use crate::explore::{ExploreData, ExploreError, ExploreInput, compute};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::relay::Relay;
 use crate::simulate::Noise;
 use crate::tuning::ultimate_gain;
@@ -22,7 +24,7 @@ pub struct Figure {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What is compared.
-    pub text: String,
+    pub text: Message,
     /// Whether it is so.
     pub holds: bool,
 }
@@ -63,7 +65,8 @@ pub fn figures() -> Vec<Figure> {
         Figure {
             number: 3,
             title: "relay loop",
-            claim: "A relay with hysteresis makes a third-order lag oscillate by itself, as the describing function says.",
+            claim: "A relay with hysteresis makes a third-order lag oscillate by itself, as the describing function \
+                 says.",
             input: input(HYSTERESIS, None),
         },
         Figure {
@@ -99,7 +102,7 @@ pub fn checks(
     }
 }
 
-fn check(text: String, holds: bool) -> Check {
+fn check(text: Message, holds: bool) -> Check {
     Check { text, holds }
 }
 
@@ -110,7 +113,7 @@ pub(crate) fn digits(difference: f64) -> i32 {
 }
 
 fn none() -> Vec<Check> {
-    vec![check("there is an exact cycle".to_owned(), false)]
+    vec![check("there is an exact cycle".into(), false)]
 }
 
 fn oscillates(data: &ExploreData) -> Vec<Check> {
@@ -118,7 +121,10 @@ fn oscillates(data: &ExploreData) -> Vec<Check> {
         return none();
     };
     let mut all = vec![check(
-        format!("the exact cycle of period {:.3} s is stable", exact.period),
+        msg!(
+            "the exact cycle of period {} s is stable",
+            fixed(exact.period, 3)
+        ),
         exact.stable == Some(true),
     )];
     let simulated = data
@@ -126,19 +132,19 @@ fn oscillates(data: &ExploreData) -> Vec<Check> {
         .map(|c| (c.period / exact.period - 1.0).abs());
     all.push(match simulated {
         Some(error) => check(
-            format!("the simulation has its period to {} digits", digits(error)),
+            msg!("the simulation has its period to {} digits", digits(error)),
             error < SETTLED,
         ),
-        None => check("the simulation settles into it".to_owned(), false),
+        None => check("the simulation settles into it".into(), false),
     });
     if let Some(described) = data.describing() {
         let period = described.cycle.period / exact.period - 1.0;
         let amplitude = described.cycle.amplitude / exact.amplitude - 1.0;
         all.push(check(
-            format!(
-                "the describing function is off by {:+.1} % in period, {:+.1} % in amplitude",
-                100.0 * period,
-                100.0 * amplitude
+            msg!(
+                "the describing function is off by {} % in period, {} % in amplitude",
+                format!("{:+.1}", 100.0 * period),
+                format!("{:+.1}", 100.0 * amplitude)
             ),
             period.abs() < DESCRIBED && amplitude.abs() < DESCRIBED,
         ));
@@ -151,16 +157,20 @@ fn noise_is_held_off(input: &ExploreInput, data: &ExploreData) -> Result<Vec<Che
         return Ok(none());
     };
     let mut all = vec![check(
-        format!(
-            "{count:.2} switches a period with ε = {:.3}",
-            input.relay.hysteresis
+        msg!(
+            "{} switches a period with ε = {}",
+            fixed(count, 2),
+            fixed(input.relay.hysteresis, 3)
         ),
         (count - 2.0).abs() < 2.0 * MOVED,
     )];
     if let Some(simulated) = data.simulated {
         let moved = simulated.period / exact.period - 1.0;
         all.push(check(
-            format!("noise moves the mean period by {:+.1} %", 100.0 * moved),
+            msg!(
+                "noise moves the mean period by {} %",
+                format!("{:+.1}", 100.0 * moved)
+            ),
             moved.abs() < MOVED,
         ));
     }
@@ -168,7 +178,10 @@ fn noise_is_held_off(input: &ExploreInput, data: &ExploreData) -> Result<Vec<Che
     ideal.relay.hysteresis = 0.0;
     if let Some(without) = compute(&ideal)?.switches_per_period {
         all.push(check(
-            format!("{without:.1} switches a period with ε = 0 in the same noise"),
+            msg!(
+                "{} switches a period with ε = 0 in the same noise",
+                fixed(without, 1)
+            ),
             without > 2.0 * (1.0 + MOVED),
         ));
     }
@@ -183,9 +196,15 @@ fn hysteresis_costs(input: &ExploreInput, data: &ExploreData) -> Result<Vec<Chec
         return Ok(none());
     };
     let gain = |amplitude| ultimate_gain(input.relay.gain, amplitude);
-    let compared = |name, old: f64, new: f64, holds| {
+    let compared = |name: &'static str, old: f64, new: f64, holds| {
         check(
-            format!("{name}: {old:.3} at ε = {HYSTERESIS}, now {new:.3}"),
+            msg!(
+                "{}: {} at ε = {}, now {}",
+                name,
+                fixed(old, 3),
+                HYSTERESIS,
+                fixed(new, 3)
+            ),
             holds,
         )
     };

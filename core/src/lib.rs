@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`crew`] | who does the parts of a computation? |
 //! | [`progress`] | how far has a computation come? |
+//! | [`message`] | what is said, before it is in a language? |
 //! | [`count`] | how many are there, in words? |
 //! | [`uncertain`] | how sure is a value, in words? |
 //! | [`equation`] | what does an equation in a file look like in a book? |
@@ -57,6 +58,7 @@ mod least_squares;
 pub mod limit_cycle;
 pub mod maps;
 pub mod measurement;
+pub mod message;
 pub mod model;
 pub mod mystery;
 pub mod on_off;

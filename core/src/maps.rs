@@ -8,6 +8,8 @@ use crate::explore::{ExploreError, ExploreInput};
 use crate::limit_cycle::{
     Cycle, describing_function, dominant, exact_symmetric, likely_half_periods, typical_frequency,
 };
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Most cells along one side.
 pub const MAX_SIZE: usize = 1024;
@@ -179,10 +181,8 @@ impl Default for MapInput {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MapError {
     /// The same parameter twice.
-    #[error("both axes vary the {0}: choose two different parameters")]
     SameParameter(&'static str),
     /// An axis without extent.
-    #[error("the {name} runs from {from} to {to}: the second must be the larger number")]
     Range {
         /// The parameter.
         name: &'static str,
@@ -192,12 +192,39 @@ pub enum MapError {
         to: f64,
     },
     /// Side length.
-    #[error("a map of {0} cells a side: must be a power of two from {COARSEST} to {MAX_SIZE}")]
     Size(usize),
     /// The loop at one of the corners.
-    #[error(transparent)]
     Loop(#[from] ExploreError),
 }
+
+impl MapError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::SameParameter(given) => {
+                msg!(
+                    "both axes vary the {}: choose two different parameters",
+                    given
+                )
+            }
+            Self::Range { name, from, to } => msg!(
+                "the {} runs from {} to {}: the second must be the larger number",
+                name,
+                from,
+                to
+            ),
+            Self::Size(given) => msg!(
+                "a map of {} cells a side: must be a power of two from {} to {}",
+                given,
+                COARSEST,
+                MAX_SIZE
+            ),
+            Self::Loop(error) => error.message(),
+        }
+    }
+}
+
+says!(MapError);
 
 impl MapInput {
     /// The loop of one cell, counted from the lower left.

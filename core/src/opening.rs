@@ -201,7 +201,7 @@ mod tests {
             },
             others: vec![],
             models: vec![],
-            text: String::new(),
+            text: crate::message::Message::default(),
         };
         let Some(Opening::Loop(opened)) = proposal.opening(&model, 0.3) else {
             panic!("a loop");

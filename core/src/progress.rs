@@ -1,5 +1,7 @@
 //! How far a long computation has come.
 
+use crate::message::Message;
+
 /// How far a job has come.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress<T> {
@@ -8,7 +10,7 @@ pub enum Progress<T> {
         /// Share done, 0 to 1.
         fraction: f64,
         /// What it is doing, in plain words.
-        text: String,
+        text: Message,
     },
     /// Finished.
     Done(T),

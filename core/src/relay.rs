@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, says};
+use crate::msg;
+
 /// A relay with hysteresis in negative feedback, `u = -k h(y)`.
 ///
 /// `h` becomes +1 when `y` rises through `+eps` and -1 when it falls through `-eps`. With asymmetry
@@ -38,12 +41,25 @@ impl Default for Relay {
 
 /// Why a relay cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("relay {name} is {value}: it must be {range}")]
 pub struct RelayError {
     pub(crate) name: &'static str,
     pub(crate) value: f64,
     pub(crate) range: &'static str,
 }
+
+impl RelayError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        msg!(
+            "relay {} is {}: it must be {}",
+            &self.name,
+            &self.value,
+            &self.range
+        )
+    }
+}
+
+says!(RelayError);
 
 impl Relay {
     /// Checks every field.

@@ -6,6 +6,9 @@
 
 use std::fmt::Write as _;
 
+use crate::message::Message;
+use crate::msg;
+
 /// An error below this share of its value is written as this: no fifth digit of a measurement is read.
 const LEAST_SHARE: f64 = 1e-4;
 
@@ -186,9 +189,9 @@ pub fn brief_quantity(value: f64, unit: &str) -> String {
 
 /// A value with its standard error in per cent and its unit, as `40.3 mN m ± 0.3 %`; alone where the error is not
 /// known; and that the record does not determine it, where it does not.
-pub fn with_error(value: f64, error: f64, unit: &str) -> String {
+pub fn with_error(value: f64, error: f64, unit: &str) -> Message {
     if !is_told(value, error) {
-        return NOT_TOLD.to_owned();
+        return NOT_TOLD.into();
     }
     let text = match written(value, error, unit) {
         Some((scale, decimals)) => scale.write(value, decimals),
@@ -197,10 +200,10 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
                 let scale = Scale::of(value, unit);
                 joined(&number(value / scale.factor, digits, false), &scale.unit)
             }
-            None => return quantity(value, unit),
+            None => return quantity(value, unit).into(),
         },
     };
-    format!("{text} ± {} %", per_cent(error / value.abs()))
+    format!("{text} ± {} %", per_cent(error / value.abs())).into()
 }
 
 /// Digits of a value that is written with a power of ten: the last one is no larger than the error.
@@ -277,11 +280,11 @@ pub fn written_like(value: f64, (other, error): (f64, f64), unit: &str) -> Strin
 pub const NORMAL_95: f64 = 1.96;
 
 /// The interval of so many errors on either side of a value, with their digits, as `1.80 to 2.20 N m`.
-pub fn interval(value: f64, error: f64, times: f64, unit: &str) -> String {
+pub fn interval(value: f64, error: f64, times: f64, unit: &str) -> Message {
     let scale = Scale::of(value.abs().max(times * error), unit);
     let decimals = decimals_for(error / scale.factor, 2);
     let [low, high] = [-times, times].map(|t| fixed((value + t * error) / scale.factor, decimals));
-    joined(&format!("{low} to {high}"), &scale.unit)
+    msg!("{} to {}", low, joined(&high, &scale.unit))
 }
 
 /// A text and a unit as it is shown, if it has one.
@@ -299,10 +302,10 @@ pub fn in_unit(text: impl Into<String>, unit: &str) -> String {
 }
 
 /// The name of an axis or of a column with its unit, as `v1 [rad/s]`; a plain number has none.
-pub fn titled(name: &str, unit: &str) -> String {
+pub fn titled(name: impl Into<Message>, unit: &str) -> Message {
     match shown_unit(unit) {
-        unit if unit.is_empty() => name.to_owned(),
-        unit => format!("{name} [{unit}]"),
+        unit if unit.is_empty() => name.into(),
+        unit => msg!("{} [{}]", name.into(), unit),
     }
 }
 

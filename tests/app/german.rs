@@ -7,6 +7,8 @@ use egui::epaint::{ClippedShape, Shape};
 use egui_kittest::kittest::Queryable as _;
 use hysteron::language::{self, Catalogue, Language, is_plain, tr_number};
 use hysteron::lessons;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 /// Texts that are the same in both languages.
 const SAME: [&str; 6] = ["Start", "Export", "Motor", "P(jω)", "Name", "Deutsch"];
@@ -211,6 +213,35 @@ fn holds(known: &str, literal: &str) -> bool {
         })
 }
 
+/// A message is looked up by its words as they are: a part of another text does not help.
+#[test]
+fn every_message_in_the_source_has_its_german_words() {
+    let known: BTreeSet<String> = german().english().collect();
+    let mut unknown = BTreeSet::new();
+    let mut seen = 0;
+    for file in ["app/src", "app/cli/src", "app/work/src", "core/src"]
+        .into_iter()
+        .flat_map(crate::support::source::files)
+    {
+        let name = file.display().to_string();
+        if name.ends_with("core/src/message.rs") || NOT_DRAWN.iter().any(|n| name.contains(n)) {
+            continue;
+        }
+        let text = std::fs::read_to_string(&file).expect("a file");
+        let messages = text.split("msg!(").skip(1).map(str::trim_start);
+        for words in messages.filter(|m| m.starts_with('"')) {
+            let literals = crate::support::source::literals(words);
+            let words = literals.into_iter().next().unwrap_or_default();
+            seen += 1;
+            if !is_plain(&words) && !known.contains(&words) {
+                unknown.insert(format!("{name}: {words:?}"));
+            }
+        }
+    }
+    assert!(seen > 500, "{seen}");
+    assert!(unknown.is_empty(), "{unknown:#?}");
+}
+
 #[test]
 fn every_text_in_the_source_has_a_german_one() {
     let known: Vec<String> = german().english().collect();
@@ -265,12 +296,27 @@ fn no_page_leaves_a_text_in_english() {
 
 #[test]
 fn the_sentences_of_an_experiment_stay_in_their_order() {
-    let said = german().translate(
-        "To tell Gain asymmetry and Constant load apart, measure again with a relay with gains 0.55 and 0.16 N m in \
-         turn, 0.035 s each, hysteresis 0.39 rad/s. The models would then differ by 132 times the noise; in this \
-         record they differ by less than 0.01. 0.07 s are enough for this; 1 s let all other effects be judged as \
-         well.",
+    let gains = msg!(
+        "a relay with gains {} and {} in turn, {} s each",
+        0.55,
+        "0.16 N m".to_owned(),
+        0.035
     );
+    let hysteresis = msg!("hysteresis {}", "0.39 rad/s".to_owned());
+    let relay = Message::list(", ", [gains, hysteresis]);
+    let names = Message::list(" and ", ["Gain asymmetry", "Constant load"]);
+    let said = msg!("To tell {} apart, measure again with {}.", names, relay)
+        .and(msg!(
+            "The models would then differ by {} times the noise; in this record they differ by less than {}.",
+            132,
+            0.01
+        ))
+        .and(msg!(
+            "{} s are enough for this; {} s let all other effects be judged as well.",
+            0.07,
+            1
+        ));
+    let said = german().say(&said);
     assert!(said.complete, "{}", said.text);
     let end = "Die Modelle würden sich dann um das 132-Fache des Rauschens unterscheiden; in dieser Aufzeichnung ist \
                es weniger als das 0,01-Fache. Dafür genügen 0,07 s; mit 1 s lassen sich auch alle anderen Effekte \

@@ -6,11 +6,12 @@ use crate::support::ui::{
 };
 use egui_kittest::kittest::Queryable as _;
 use hysteron::{HysteronApp, link};
+use hysteron_core::message::Message;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
 /// Opens a link in an app of its own and gives the link to what is there then.
-fn through(text: &str) -> Result<String, String> {
+fn through(text: &str) -> Result<String, Message> {
     let mut app = HysteronApp::default();
     app.open_link(&egui::Context::default(), text)?;
     Ok(app.link())
@@ -87,7 +88,7 @@ fn what_a_link_sets_is_set_while_its_file_is_still_read() {
     }
     let magic = "v1;compare;compare.file=drive-02;compare.effects=%5B%22magic%22%5D";
     let refused = there.state_mut().open_link(&ctx, magic);
-    assert!(refused.is_err_and(|e| e.contains("does not exist")));
+    assert!(refused.is_err_and(|e| e.to_string().contains("does not exist")));
     finish(&mut there);
     assert_eq!(state(&there)["link"], texts[1]);
     assert!(
@@ -382,14 +383,14 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
             .state_mut()
             .open_link(&ctx, text)
             .expect_err("this is no state of the app");
-        assert!(refused.contains(reason), "{text}: {refused}");
-        assert_eq!(refused.lines().count(), 1, "{refused}");
-        assert!(refused.len() < 240, "{refused}");
-        assert_eq!(state(&harness)["notice"], refused);
+        assert!(refused.to_string().contains(reason), "{text}: {refused}");
+        assert_eq!(refused.to_string().lines().count(), 1, "{refused}");
+        assert!(refused.to_string().len() < 240, "{refused}");
+        assert_eq!(state(&harness)["notice"], refused.to_string());
         assert_eq!(state(&harness)["link"], before, "{text}");
     }
     let long = format!("v1;explore;loop.relay.gain={}", "1".repeat(40_000));
-    assert!(through(&long).is_err_and(|e| e.contains("too long")));
+    assert!(through(&long).is_err_and(|e| e.to_string().contains("too long")));
     harness.step();
     harness.step();
     picture(&mut harness, "link_refused");

@@ -361,7 +361,12 @@ fn the_next_experiment_is_proposed_within_the_limits() {
         proposal.sufficient && proposal.duration <= 1.2,
         "{proposal:?}"
     );
-    let words = diagnosis.verdict.next_experiment.as_deref().unwrap();
+    let words = diagnosis
+        .verdict
+        .next_experiment
+        .as_ref()
+        .unwrap()
+        .to_string();
     assert!(words.contains("0.4"), "the gain of the relay: {words}");
     let text = run("input=0.4, duration=1.2", "text");
     let text = String::from_utf8_lossy(&text.stdout);

@@ -130,7 +130,10 @@ fn every_text_of_a_diagnosis_and_of_its_report_has_a_german_one() {
     let english = page(Tongue::ENGLISH);
     language::speak(Language::German);
     let text = render(&diagnosis, "drive-12.csv", &measurement.warnings);
-    let german = page(Tongue { code: "de", say });
+    let german = page(Tongue {
+        code: "de",
+        say: |text| say(text),
+    });
     assert_eq!(language::missed(), Vec::<String>::new());
     assert!(text.contains("Urteil"), "{text}");
     assert!(english.contains("<html lang=\"en\">") && english.contains("0.5997 ms"));

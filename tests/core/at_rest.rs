@@ -31,7 +31,8 @@ fn check(d: &Diagnosis, missing: &[&str], parameters: &[(&str, f64)]) {
     // Where the body lets go may not be explained to the last count, but then less than a hundredth of the first error
     // is left, and that is said.
     let (first, last) = (&d.steps[0], d.steps.last().unwrap());
-    let nearly = last.error < 1e-2 * first.error && d.verdict.text.contains("more than noise");
+    let nearly =
+        last.error < 1e-2 * first.error && d.verdict.text.to_string().contains("more than noise");
     assert!(d.verdict.complete || nearly, "{}", d.verdict.text);
     for (symbol, truth) in parameters {
         check_value(d, symbol, *truth);

@@ -127,7 +127,11 @@ fn it_is_not_trusted_where_it_is_22_per_cent_off() {
     let prediction = predict(&plant, &relay(1.0, 0.5)).unwrap();
     let trust = &prediction.trust;
     assert!(!trust.reliable, "{trust:?}");
-    assert!(trust.text.contains("Do not trust"), "{}", trust.text);
+    assert!(
+        trust.text.to_string().contains("Do not trust"),
+        "{}",
+        trust.text
+    );
     close(
         "period error",
         trust.period_error.unwrap().abs(),

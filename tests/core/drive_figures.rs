@@ -9,6 +9,7 @@ use hysteron_core::drive::{
 };
 use hysteron_core::explore::{ExploreInput, compute};
 use hysteron_core::limit_cycle::exact_symmetric;
+use hysteron_core::message::Message;
 use hysteron_core::plant::TransferFunction;
 use hysteron_core::relay::Relay;
 
@@ -217,7 +218,9 @@ fn a_designed_test_crosses_the_gap_and_pushes_the_load() {
 
 #[test]
 fn a_design_says_what_it_cannot_do() {
-    let said = |drive: &RoughDrive| design_drifting_test(drive).unwrap().warnings.join(" ");
+    let said = |drive: &RoughDrive| {
+        Message::list(" ", design_drifting_test(drive).unwrap().warnings).to_string()
+    };
     let fine = rough(0.03, 0.0, 0.019, 8.8e-4);
     // Neither friction nor delay: nothing makes it drift but a delay that the controller adds.
     let mut smooth = rough(0.0, 0.0, 0.019, 8.8e-4);

@@ -10,6 +10,7 @@ use hysteron_core::measurement::{
     ImportOptions, Kind, Mapping, Measurement, Motion, Quantity, Role, TorqueConstant, columns,
     guess, import,
 };
+use hysteron_core::message::Message;
 use proptest::prelude::*;
 
 const FLAT: &[u8] = include_bytes!("../data/flat-v7.mat");
@@ -81,8 +82,8 @@ fn is_the_rig(m: &Measurement, torque_by_current: f64) {
 }
 
 /// What was said of a file, but that its velocity is not the rate of its position: the columns are made up.
-fn notes(m: &Measurement) -> Vec<&str> {
-    let said = m.warnings.iter().map(String::as_str);
+fn notes(m: &Measurement) -> Vec<String> {
+    let said = m.warnings.iter().map(Message::to_string);
     said.filter(|w| !w.contains("the rate at which")).collect()
 }
 
@@ -429,7 +430,11 @@ fn records_of_the_toolbox_are_read_at_once() {
     ]);
     let record = read(&bytes, "", None);
     let said = "The file holds id, val: 'id' was read. A mapping reads another one.";
-    assert!(notes(&record).contains(&said), "{:?}", notes(&record));
+    assert!(
+        notes(&record).contains(&said.to_owned()),
+        "{:?}",
+        notes(&record)
+    );
     assert_eq!(record.kind, Kind::Process);
     assert_eq!(record.time[59], 59.0 * 0.25);
     assert_eq!(record.input.values, input);

@@ -42,7 +42,11 @@ fn without(mut record: Measurement, lost: &[Range<usize>]) -> Measurement {
 fn check(d: &Diagnosis, said: &str) {
     assert_eq!(classes(d), [["coulomb_friction"]], "{}", d.verdict.text);
     assert!(d.verdict.complete, "{}", d.verdict.text);
-    assert!(d.verdict.text.contains(said), "{}", d.verdict.text);
+    assert!(
+        d.verdict.text.to_string().contains(said),
+        "{}",
+        d.verdict.text
+    );
     check_value(d, "c", LEVEL);
 }
 
@@ -71,5 +75,9 @@ fn nor_is_a_pause() {
 #[test]
 fn where_none_is_lost_none_is_said() {
     let d = finish(DiagnosisJob::new(&record()).unwrap());
-    assert!(!d.verdict.text.contains("Rows"), "{}", d.verdict.text);
+    assert!(
+        !d.verdict.text.to_string().contains("Rows"),
+        "{}",
+        d.verdict.text
+    );
 }

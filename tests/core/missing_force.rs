@@ -43,7 +43,7 @@ fn a_torque_that_acts_once_is_found_in_time() {
         length,
     };
     let best = strongest(&unknown(sines, pulse), "time");
-    assert!(best.text.contains("depends on the time") && best.unit == "N m");
+    assert!(best.text.to_string().contains("depends on the time") && best.unit == "N m");
     let mut inside = 0;
     for p in &best.parts {
         if p.from > from && p.to < to {

@@ -164,7 +164,10 @@ fn what_no_input_can_tell_is_said_so() {
         "{proposal:?}"
     );
     assert!(
-        proposal.text.contains("Measure another quantity"),
+        proposal
+            .text
+            .to_string()
+            .contains("Measure another quantity"),
         "{}",
         proposal.text
     );
@@ -209,7 +212,11 @@ fn an_experiment_keeps_to_the_limits() {
         }
     };
     assert!(!faint.sufficient, "{}", faint.text);
-    assert!(faint.text.contains("larger input"), "{}", faint.text);
+    assert!(
+        faint.text.to_string().contains("larger input"),
+        "{}",
+        faint.text
+    );
     let mut poor = first.models.clone();
     poor[0].parameters.clear();
     let error = again(&poor).err();

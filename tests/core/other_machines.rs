@@ -128,7 +128,11 @@ fn a_controller_may_be_faster_than_the_record() {
     check(&d, &["coulomb_friction"], &[("c", FRICTION), ("h", 0.4)]);
     assert!(d.verdict.complete, "{}", d.verdict.text);
     let said = "A logging effect, not the machine: Sampled input, share of the next sample ";
-    assert!(d.verdict.text.starts_with(said), "{}", d.verdict.text);
+    assert!(
+        d.verdict.text.to_string().starts_with(said),
+        "{}",
+        d.verdict.text
+    );
 }
 
 /// A force that depends on the position, where that is the integral of a noisy velocity.

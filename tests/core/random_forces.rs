@@ -67,7 +67,11 @@ fn random_forces_are_no_missing_effect() {
             "{}",
             d.verdict.text
         );
-        assert!(d.verdict.text.contains(SAID), "{}", d.verdict.text);
+        assert!(
+            d.verdict.text.to_string().contains(SAID),
+            "{}",
+            d.verdict.text
+        );
         let error = d.steps.last().unwrap().error;
         assert!(error > 1.2, "nothing to explain: {error}");
     }
@@ -85,6 +89,10 @@ fn a_spring_is_no_random_force_and_no_friction() {
             },
         ));
         assert_eq!(classes(&d), [["return_spring"]], "{}", d.verdict.text);
-        assert!(!d.verdict.text.contains(SAID), "{}", d.verdict.text);
+        assert!(
+            !d.verdict.text.to_string().contains(SAID),
+            "{}",
+            d.verdict.text
+        );
     }
 }

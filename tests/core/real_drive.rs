@@ -51,7 +51,10 @@ fn the_positioning_system_has_dry_friction_and_an_offset() {
     assert!(d.verdict.unknown && !d.verdict.complete);
     assert!(!last.findings.is_empty());
     assert!(
-        d.verdict.text.contains(&last.findings[0].text),
+        d.verdict
+            .text
+            .to_string()
+            .contains(&last.findings[0].text.to_string()),
         "{}",
         d.verdict.text
     );

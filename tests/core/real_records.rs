@@ -89,7 +89,7 @@ fn a_tank_below_another_is_unknown_and_its_limit_is_said() {
     check(&d, &[]);
     assert!(d.verdict.unknown, "{}", d.verdict.text);
     assert!(
-        d.verdict.text.contains("for 47 samples"),
+        d.verdict.text.to_string().contains("for 47 samples"),
         "{}",
         d.verdict.text
     );
@@ -103,7 +103,11 @@ fn a_process_that_integrates_has_a_rate_and_no_gain() {
     };
     check(&d, &[&["input_delay"]]);
     check_near(&d, "K/T", -8.0, 0.1);
-    assert!(d.verdict.text.contains("integrates"), "{}", d.verdict.text);
+    assert!(
+        d.verdict.text.to_string().contains("integrates"),
+        "{}",
+        d.verdict.text
+    );
 }
 
 /// An industrial servo in one move: friction of 5.5 % at 27 rad/s, 7.2 at 61, 8.9 at 102 and 9.4 at 174.

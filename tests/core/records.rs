@@ -152,7 +152,11 @@ fn an_output_that_stays_where_the_input_leaves_it_integrates() {
     check(&d, &[]);
     let (rate, error) = parameter(&d, "K/T");
     assert!((rate + 0.4).abs() < 4.0 * error, "{rate} ± {error}");
-    assert!(d.verdict.text.contains("integrates"), "{}", d.verdict.text);
+    assert!(
+        d.verdict.text.to_string().contains("integrates"),
+        "{}",
+        d.verdict.text
+    );
 }
 
 /// A drive with dry friction that is switched between levels which all turn it forward, as a file.
@@ -178,7 +182,7 @@ fn a_drive_that_turns_one_way_does_not_tell_friction_from_a_load() {
         let d = diagnose(&record);
         check(&d, &[ONE_WAY]);
         let next = d.verdict.next_experiment.unwrap();
-        assert!(next.contains("both ways"), "{next}");
+        assert!(next.to_string().contains("both ways"), "{next}");
     }
 }
 
@@ -331,7 +335,11 @@ fn a_room_that_wanders_is_no_effect_and_hides_none() {
             let d = diagnose(&in_wandering_room(rig, seed, 0.03));
             check(&d, missing);
             assert!(!d.verdict.complete, "{}", d.verdict.text);
-            assert!(d.verdict.text.contains("wanders"), "{}", d.verdict.text);
+            assert!(
+                d.verdict.text.to_string().contains("wanders"),
+                "{}",
+                d.verdict.text
+            );
         }
     }
 }
@@ -343,7 +351,11 @@ fn a_process_integrates_only_if_its_rate_is_told() {
         return;
     };
     check(&d, &[]);
-    assert!(!d.verdict.text.contains("integrates"), "{}", d.verdict.text);
+    assert!(
+        !d.verdict.text.to_string().contains("integrates"),
+        "{}",
+        d.verdict.text
+    );
 }
 
 #[test]

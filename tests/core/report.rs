@@ -5,6 +5,7 @@ use hysteron_core::diagnosis::{
     Diagnosis, Discovery, DiscoveryEnd, FoundFormula, Parameter, Status, StepReport,
 };
 use hysteron_core::measurement::{Measurement, import_csv};
+use hysteron_core::message::Message;
 use hysteron_core::progress::Progress;
 use hysteron_core::report::{Provenance, ReportInput, Tongue, html, sha256};
 
@@ -126,22 +127,21 @@ fn a_report_says_what_the_diagnosis_says() {
     check_self_contained(&page);
     let last = diagnosis.steps.last().unwrap();
     for text in [
-        diagnosis.verdict.text.as_str(),
-        "u_acting(t) = u(t - tau)",
-        "T dy/dt + y = K (u_acting + F)",
-        "hysteron diagnose process-02.csv",
-        "4711 bytes",
-        &sha256(b"abc"),
-        "Hysteron 1.2.3",
-        "prefers-color-scheme: dark",
-        "@media print",
-        &last
-            .findings
+        diagnosis.verdict.text.to_string(),
+        "u_acting(t) = u(t - tau)".to_owned(),
+        "T dy/dt + y = K (u_acting + F)".to_owned(),
+        "hysteron diagnose process-02.csv".to_owned(),
+        "4711 bytes".to_owned(),
+        sha256(b"abc"),
+        "Hysteron 1.2.3".to_owned(),
+        "prefers-color-scheme: dark".to_owned(),
+        "@media print".to_owned(),
+        last.findings
             .first()
-            .map_or_else(String::new, |f| f.text.clone()),
-        &diagnosis.steps[0].findings[0].text,
+            .map_or_else(String::new, |f| f.text.to_string()),
+        diagnosis.steps[0].findings[0].text.to_string(),
     ] {
-        assert!(page.contains(text), "'{text}' is missing");
+        assert!(page.contains(&text), "'{text}' is missing");
     }
     // Detail, its residual, the whole residual; one picture an axis at least; the waterfall.
     assert!(page.matches("<figure>").count() >= 5);
@@ -156,7 +156,7 @@ fn text_from_a_file_never_becomes_markup() {
     let text = String::from_utf8(bytes("process-02")).unwrap();
     let hostile = "\"><script>alert(1)</script><img src=x onerror=alert(1)>&amp;";
     let mut measurement = import_csv(hostile, text.as_bytes(), None).unwrap();
-    measurement.warnings.push(hostile.to_owned());
+    measurement.warnings.push(Message::name(hostile));
     measurement.outputs[0].name = hostile.to_owned();
     measurement.outputs[0].unit = hostile.to_owned();
     measurement.input.unit = hostile.to_owned();
@@ -193,7 +193,7 @@ fn a_formula_that_was_looked_for_has_its_section() {
         formulas: vec![formula(3, 7.0, false), formula(5, 1.01, true)],
         curve: None,
         experiment: None,
-        text: "Input = -a*y^5 & no <b>more</b>.".to_owned(),
+        text: "Input = -a*y^5 & no <b>more</b>.".into(),
     };
     let measurement = import_csv("process-02.csv", &bytes("process-02"), None).unwrap();
     let (_, without) = page(&measurement, "hysteron");

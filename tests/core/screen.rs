@@ -38,7 +38,11 @@ fn a_controller_is_not_taken_for_the_plant() {
     let found = screen(&measurement.expect("a record"));
     assert_eq!(found.input_check.verdict, InputVerdict::ClosedLoop);
     assert!(
-        found.input_check.text.contains("u = -1.84 y + 185"),
+        found
+            .input_check
+            .text
+            .to_string()
+            .contains("u = -1.84 y + 185"),
         "{}",
         found.input_check.text
     );
@@ -317,7 +321,11 @@ fn a_controller_is_read_off() {
     let found = screen(&measurement);
     assert_eq!(found.input_check.verdict, InputVerdict::ClosedLoop);
     assert!(
-        found.input_check.text.contains("u = -1.50 y + 3.00"),
+        found
+            .input_check
+            .text
+            .to_string()
+            .contains("u = -1.50 y + 3.00"),
         "{}",
         found.input_check.text
     );
@@ -330,7 +338,10 @@ fn a_controller_with_limits_is_read_off_with_its_set_point() {
     let check = screen(&measurement).input_check;
     assert_eq!(check.verdict, InputVerdict::ClosedLoop, "{}", check.text);
     assert!(
-        check.text.contains("u = -0.400 y - 0.00500 ∫(y - "),
+        check
+            .text
+            .to_string()
+            .contains("u = -0.400 y - 0.00500 ∫(y - "),
         "{}",
         check.text
     );

@@ -63,7 +63,11 @@ fn check(d: &Diagnosis, missing: &[&str]) {
 fn check_said(record: &Measurement, missing: &[&str], words: &str) {
     let d = diagnose(record);
     check(&d, missing);
-    assert!(d.verdict.text.contains(words), "{}", d.verdict.text);
+    assert!(
+        d.verdict.text.to_string().contains(words),
+        "{}",
+        d.verdict.text
+    );
 }
 
 #[test]
@@ -73,7 +77,11 @@ fn noise_that_remembers_is_no_missing_effect_and_hides_none() {
         check(&d, &missing);
         // A share of 0.6 makes neighbours differ by less than their noise is.
         assert!(d.noise_floor > 1.15, "{}", d.noise_floor);
-        assert!(d.verdict.text.contains("remembers"), "{}", d.verdict.text);
+        assert!(
+            d.verdict.text.to_string().contains("remembers"),
+            "{}",
+            d.verdict.text
+        );
         assert!(d.steps.last().unwrap().findings.is_empty());
     }
 }
@@ -83,7 +91,11 @@ fn white_noise_has_a_floor_of_one() {
     let d = diagnose(&with_noise(drive(0.0, None), 0.0, 4));
     check(&d, &[]);
     assert!((d.noise_floor - 1.0).abs() < f64::EPSILON);
-    assert!(!d.verdict.text.contains("remembers"), "{}", d.verdict.text);
+    assert!(
+        !d.verdict.text.to_string().contains("remembers"),
+        "{}",
+        d.verdict.text
+    );
 }
 
 /// What acts once is not noise, however small and short it is.

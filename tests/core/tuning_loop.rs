@@ -383,9 +383,9 @@ fn the_chosen_rule_ends_the_experiment() {
     let after = report.after.as_ref().unwrap();
     let chosen = report.rules.iter().find(|r| r.rule == "amigo_pid").unwrap();
     assert_eq!(chosen.outcome.as_ref().unwrap(), after);
-    let titles: Vec<&str> = report.steps.iter().map(|s| s.title.as_str()).collect();
-    assert_eq!(titles.first(), Some(&"The loop before"));
-    assert_eq!(titles.last(), Some(&"The loop after"));
+    let titles: Vec<String> = report.steps.iter().map(|s| s.title.to_string()).collect();
+    assert_eq!(titles.first().map(String::as_str), Some("The loop before"));
+    assert_eq!(titles.last().map(String::as_str), Some("The loop after"));
     assert!(
         titles
             .iter()

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use hysteron_core::diagnosis::Limits;
 use hysteron_core::measurement::{self, Mapping, Period, TorqueConstant};
+use hysteron_core::message::Message;
 
 use crate::output::Format;
 
@@ -119,9 +120,9 @@ impl<T: FromStr> FromStr for AsWritten<T> {
 }
 
 /// The limits as written, if they can be read.
-fn limits(text: &str) -> Result<String, String> {
+fn limits(text: &str) -> Result<String, Message> {
     if text.trim_matches([' ', ',']).is_empty() {
-        return Err("it names no limit; expected such as input=0.5,duration=10".to_owned());
+        return Err("it names no limit; expected such as input=0.5,duration=10".into());
     }
     let mut any = Limits {
         input: 1.0,
@@ -131,6 +132,6 @@ fn limits(text: &str) -> Result<String, String> {
         speed: None,
         travel: None,
     };
-    any.set(text).map_err(|e| e.to_string())?;
+    any.set(text).map_err(Message::from)?;
     Ok(text.to_owned())
 }

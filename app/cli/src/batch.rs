@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError, mpsc};
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_work::language::say;
 use serde::Serialize;
 
@@ -37,7 +39,7 @@ pub fn run(setup: &Setup) -> ExitCode {
 
 /// What ends a batch early.
 enum Stop {
-    BadInput(String),
+    BadInput(Message),
     Output(io::Error),
 }
 
@@ -89,7 +91,7 @@ impl Batch {
         if self.skipped > 0 {
             let skipped = self.skipped;
             self.progress
-                .line(&say(&format!("{skipped} skipped: their results are there")));
+                .line(&say(msg!("{} skipped: their results are there", skipped)));
         }
         let workers = arguments
             .jobs
@@ -130,7 +132,7 @@ impl Batch {
     fn keep(
         &mut self,
         file: &Path,
-        report: Result<Report, String>,
+        report: Result<Report, Message>,
         format: Format,
     ) -> Result<(), Stop> {
         let name = file.to_string_lossy();
@@ -139,16 +141,18 @@ impl Batch {
             Err(line) => serde_json::to_string(&BadFile {
                 schema: 1,
                 file: &name,
-                failed: line,
+                failed: &line.to_string(),
             }),
         }
         .map_err(|e| {
-            Stop::Output(io::Error::other(format!(
-                "{name} cannot be written as JSON: {e}"
+            Stop::Output(io::Error::other(msg!(
+                "{} cannot be written as JSON: {}",
+                Message::name(name.to_string()),
+                Message::name(e.to_string())
             )))
         })?;
         if let Some(record) = &mut self.record {
-            record.add(&name, &json, report.as_ref().err())?;
+            record.add(&name, &json, report.as_ref().err().map(Message::to_string))?;
         }
         let shown = match (&report, format, &self.record) {
             (Ok(report), Format::Text, _) => report.text(&name) + "\n",
@@ -189,17 +193,18 @@ struct Record {
 impl Record {
     /// Opens or makes it. A last line that was cut off while it was written is taken away.
     fn open(path: &Path) -> Result<Self, Stop> {
-        let bad = |what: String| Stop::BadInput(format!("{}{what}", path.display()));
+        let shown = || Message::name(path.display().to_string());
+        let cause = |e: io::Error| Message::name(e.to_string());
         let mut file = OpenOptions::new()
             .read(true)
             .append(true)
             .create(true)
             .open(path)
-            .map_err(|e| bad(format!(" cannot be opened: {e}")))?;
+            .map_err(|e| Stop::BadInput(msg!("{} cannot be opened: {}", shown(), cause(e))))?;
         let mut bytes = Vec::new();
         file.seek(SeekFrom::Start(0))
             .and_then(|_| file.read_to_end(&mut bytes))
-            .map_err(|e| bad(format!(" cannot be read: {e}")))?;
+            .map_err(|e| Stop::BadInput(msg!("{} cannot be read: {}", shown(), cause(e))))?;
         let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
         let (lines, rest) = bytes.split_at(whole);
         let mut seen = HashMap::new();
@@ -208,8 +213,9 @@ impl Record {
                 continue;
             }
             let (file, failed) = understand(line).ok_or_else(|| {
-                bad(format!(
-                    ", line {}: not a result of hysteron diagnose; --resume needs a new file or one that it wrote",
+                Stop::BadInput(msg!(
+                    "{}, line {}: not a result of hysteron diagnose; --resume needs a new file or one that it wrote",
+                    shown(),
                     i + 1
                 ))
             })?;
@@ -221,9 +227,10 @@ impl Record {
         } else if rest.is_empty() || rest.starts_with(b"{\"") {
             file.set_len(whole as u64)?;
         } else {
-            return Err(bad(
-                ": not a result of hysteron diagnose; --resume needs a new file or one that it wrote".to_owned(),
-            ));
+            return Err(Stop::BadInput(msg!(
+                "{}: not a result of hysteron diagnose; --resume needs a new file or one that it wrote",
+                shown()
+            )));
         }
         Ok(Self { file, seen })
     }
@@ -233,12 +240,12 @@ impl Record {
     }
 
     /// Adds a line in one write; a failure that stands there already is not said again.
-    fn add(&mut self, name: &str, json: &str, failed: Option<&String>) -> io::Result<()> {
-        if failed.is_some() && self.seen.get(name).and_then(Option::as_ref) == failed {
+    fn add(&mut self, name: &str, json: &str, failed: Option<String>) -> io::Result<()> {
+        if failed.is_some() && self.seen.get(name).and_then(Option::as_ref) == failed.as_ref() {
             return Ok(());
         }
         self.file.write_all(format!("{json}\n").as_bytes())?;
-        self.seen.insert(name.to_owned(), failed.cloned());
+        self.seen.insert(name.to_owned(), failed);
         Ok(())
     }
 }

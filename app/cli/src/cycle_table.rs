@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use hysteron_core::message::Message;
 use hysteron_work::language::say;
 
 /// Cycles by name, with period, amplitude and whether they are stable.
@@ -14,7 +15,7 @@ impl CycleTable {
     /// Adds a cycle; `stable` is `None` where that is not known.
     pub fn row(&mut self, name: &str, period: f64, amplitude: f64, stable: Option<bool>) {
         let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
-        let [period, amplitude] = [period, amplitude].map(|v| say(&format!("{v:.9}")));
+        let [period, amplitude] = [period, amplitude].map(|v| say(format!("{v:.9}")));
         let (name, stable) = (say(name), say(stable));
         let _ = writeln!(
             self.rows,
@@ -23,7 +24,7 @@ impl CycleTable {
     }
 
     /// Adds a line of words on cycles of this name.
-    pub fn words(&mut self, name: &str, words: &str) {
+    pub fn words(&mut self, name: &str, words: &Message) {
         let _ = writeln!(self.rows, "{:<22} {}", say(name), say(words));
     }
 

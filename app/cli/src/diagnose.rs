@@ -4,6 +4,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use hysteron_core::measurement::{ImportOptions, import};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::user_model::UserModel;
 
 use crate::arguments::Arguments;
@@ -24,23 +26,33 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         _ if arguments.report.is_some() || arguments.save_model.is_some() => {
             finish(Err(
                 "--report and --save-model write the result of one file: give one FILE, without --resume"
-                    .to_owned(),
+                    .into(),
             ))
         }
         _ => batch::run(&setup),
     }
 }
 
-fn read_model(path: &Path) -> Result<UserModel, String> {
+fn read_model(path: &Path) -> Result<UserModel, Message> {
     let shown = path.display();
-    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
-    let text =
-        str::from_utf8(&bytes).map_err(|_| format!("{shown}: a model must be UTF-8 text"))?;
-    UserModel::from_toml(text).map_err(|e| format!("{shown}, {e}"))
+    let bytes = std::fs::read(path).map_err(|e| {
+        msg!(
+            "{} cannot be read: {}",
+            Message::name(shown.to_string()),
+            Message::name(e.to_string())
+        )
+    })?;
+    let text = str::from_utf8(&bytes).map_err(|_| {
+        msg!(
+            "{}: a model must be UTF-8 text",
+            Message::name(shown.to_string())
+        )
+    })?;
+    UserModel::from_toml(text).map_err(|e| msg!("{}, {}", Message::name(shown.to_string()), e))
 }
 
 /// The report, or one line that says what is wrong with the input.
-fn single(file: &Path, setup: &Setup) -> Result<String, String> {
+fn single(file: &Path, setup: &Setup) -> Result<String, Message> {
     let arguments = setup.arguments;
     let mut line = ProgressLine::new();
     let report = one(file, setup, |fraction, text| line.show(fraction, text));
@@ -52,16 +64,22 @@ fn single(file: &Path, setup: &Setup) -> Result<String, String> {
     ];
     for (path, text) in files {
         if let (Some(path), Some(text)) = (path, text) {
-            std::fs::write(path, text)
-                .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
+            std::fs::write(path, text).map_err(|e| {
+                msg!(
+                    "{} cannot be written: {}",
+                    Message::name(path.display().to_string()),
+                    Message::name(e.to_string())
+                )
+            })?;
         }
     }
     match arguments.format {
         Format::Text => Ok(report.text(&report.name)),
         Format::Json => report.json().map_err(|e| {
-            format!(
-                "{}: the diagnosis cannot be written as JSON: {e}",
-                report.name
+            msg!(
+                "{}: the diagnosis cannot be written as JSON: {}",
+                Message::name(report.name.clone()),
+                Message::name(e.to_string())
             )
         }),
     }
@@ -71,8 +89,8 @@ fn single(file: &Path, setup: &Setup) -> Result<String, String> {
 ///
 /// # Errors
 /// One line that says what is wrong with it.
-pub fn of_bytes(name: &str, bytes: &[u8]) -> Result<String, String> {
-    let measurement = import(name, bytes, &ImportOptions::default()).map_err(|e| e.to_string())?;
+pub fn of_bytes(name: &str, bytes: &[u8]) -> Result<String, Message> {
+    let measurement = import(name, bytes, &ImportOptions::default()).map_err(Message::from)?;
     let setup = Setup {
         arguments: &Arguments::of(name),
         model: None,

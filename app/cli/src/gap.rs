@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use hysteron_core::backlash::{BacklashMap, GapEstimate, MapSilence, backlash_map, estimate_gap};
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, Quantity, TorqueConstant};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_work::language::say;
 use serde_json::json;
 
@@ -37,7 +39,7 @@ pub struct Arguments {
 }
 
 /// The estimate, or one line that says what is wrong with the input.
-pub fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, Message> {
     let options = ImportOptions {
         kind: None,
         mapping: arguments.map.clone().unwrap_or_default(),
@@ -46,7 +48,8 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
     };
     let (measurement, _) = read(&arguments.file, &options)?;
     let name = &measurement.name;
-    let estimate = estimate_gap(&measurement).map_err(|e| format!("{name}: {e}"))?;
+    let estimate =
+        estimate_gap(&measurement).map_err(|e| msg!("{}: {}", Message::name(name.clone()), e))?;
     let has_load = measurement
         .reference
         .iter()
@@ -75,7 +78,12 @@ fn json(estimate: &GapEstimate) -> serde_json::Value {
     })
 }
 
-fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[String]) -> String {
+fn text(
+    name: &str,
+    estimate: &GapEstimate,
+    map: Option<&BacklashMap>,
+    notes: &[Message],
+) -> String {
     let (scale, unit) = estimate.written_in();
     let scaled = |length: f64| length * scale;
     let mut out = format!(
@@ -85,12 +93,18 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
     );
     if let Some(interval) = estimate.interval {
         let [low, high] = interval.map(scaled);
-        let interval = format!("95 % interval {low:.3} to {high:.3} {unit}");
+        let interval = msg!(
+            "95 % interval {} to {} {}",
+            fixed(low, 3),
+            fixed(high, 3),
+            &unit
+        );
         let _ = writeln!(out, "{}", say(&interval));
     }
     if !estimate.traverses.is_empty() && estimate.gap.is_some() {
-        let (at, gap) = (format!("at [{unit}]"), format!("gap [{unit}]"));
-        let [left, reached, at, gap] = ["left [s]", "reached [s]", &at, &gap].map(say);
+        let (at, gap) = (msg!("at [{}]", &unit), msg!("gap [{}]", &unit));
+        let [left, reached, at, gap] =
+            ["left [s]".into(), "reached [s]".into(), at, gap].map(|m: Message| say(m));
         let _ = writeln!(
             out,
             "\n{left:>13} {at:>11} {reached:>13} {at:>11} {gap:>12}"
@@ -108,7 +122,7 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
             let _ = writeln!(out, "{}", say(&row));
         }
         if estimate.traverses.len() > LISTED {
-            let more = format!("... {} more", estimate.traverses.len() - LISTED);
+            let more = msg!("... {} more", estimate.traverses.len() - LISTED);
             let _ = writeln!(out, "{}", say(&more));
         }
     }
@@ -116,12 +130,16 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
         let found = match (map.gap, map.asymmetry) {
             (Some(gap), Some(asymmetry)) => {
                 let [gap, asymmetry] = [gap, asymmetry].map(scaled);
-                format!(
-                    "By the backlash map with the measured load, for reference: gap {gap:.3} {unit}, its middle at \
-                     {asymmetry:.3} {unit}"
+                msg!(
+                    "By the backlash map with the measured load, for reference: gap {} {}, its middle at \
+                     {} {}",
+                    fixed(gap, 3),
+                    &unit,
+                    fixed(asymmetry, 3),
+                    &unit
                 )
             }
-            _ => format!(
+            _ => msg!(
                 "By the measured load, for reference: {}",
                 silence(map, scale, &unit)
             ),
@@ -135,19 +153,19 @@ fn text(name: &str, estimate: &GapEstimate, map: Option<&BacklashMap>, notes: &[
 }
 
 /// Why the map shows no gap.
-fn silence(map: &BacklashMap, scale: f64, unit: &str) -> String {
+fn silence(map: &BacklashMap, scale: f64, unit: &str) -> Message {
     match map.silence {
         Some(MapSilence::NotMoved) => {
-            "it did not move by more than its sensor can tell, so that its map shows no gap"
-                .to_owned()
+            "it did not move by more than its sensor can tell, so that its map shows no gap".into()
         }
-        Some(MapSilence::Yields { span }) => format!(
-            "it moves within {:.3} {unit} of the motor, and what joins them yields over most of that, as a shaft does: \
+        Some(MapSilence::Yields { span }) => msg!(
+            "it moves within {} {} of the motor, and what joins them yields over most of that, as a shaft does: \
              its map shows no gap",
-            scale * span
+            fixed(scale * span, 3),
+            unit.to_owned()
         ),
         Some(MapSilence::OneWay) | None => {
-            "it was pushed one way at most, so that its map shows no gap".to_owned()
+            "it was pushed one way at most, so that its map shows no gap".into()
         }
     }
 }

@@ -26,6 +26,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
+use hysteron_core::message::Message;
 use hysteron_work::language::{self, Language};
 
 pub use output::{complain, fail};
@@ -114,11 +115,11 @@ pub fn parse<A: Parser>(arguments: impl IntoIterator<Item = OsString>) -> Result
 }
 
 /// What was wrong with the arguments, without the usage text beneath it.
-fn usage_error(error: &clap::Error, program: &str) -> String {
+fn usage_error(error: &clap::Error, program: &str) -> Message {
     let text = error.to_string();
     let first = text.split("\n\n").next().unwrap_or_default();
     let first = first.strip_prefix("error: ").unwrap_or(first);
-    format!("{first}; see {program} --help")
+    Message::name(format!("{first}; see {program} --help"))
 }
 
 /// Diagnoses a file as `diagnose FILE.csv` does.

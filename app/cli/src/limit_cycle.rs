@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use hysteron_core::limit_cycle::{Cycle, ExactCycle, LongRunResult, Prediction, Trust, predict};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::scenario::{AnyScenario, Scenario};
 use hysteron_core::tuning::{RelayGain, StabilityLimits, relay_gain, stability_limits};
 use hysteron_work::language::say;
@@ -42,8 +44,14 @@ struct Report {
 }
 
 /// The report, or one line that says what is wrong with the input.
-pub fn run(arguments: &Arguments) -> Result<String, String> {
-    let located = |e| format!("{}: {e}", arguments.file.display());
+pub fn run(arguments: &Arguments) -> Result<String, Message> {
+    let located = |e: Message| {
+        msg!(
+            "{}: {}",
+            Message::name(arguments.file.display().to_string()),
+            e
+        )
+    };
     Ok(match simulate::read(&arguments.file)? {
         AnyScenario::Loop(scenario) => {
             let report = report(&scenario).map_err(located)?;
@@ -69,17 +77,17 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         AnyScenario::Drive(input) => {
             let report = DriveReport::new(&input).map_err(located)?;
             match arguments.format {
-                Format::Text => say_lines(&report.text()),
+                Format::Text => say_lines(&report.lines()),
                 Format::Json => format!("{:#}\n", report.json()),
             }
         }
     })
 }
 
-fn report(scenario: &Scenario) -> Result<Report, String> {
+fn report(scenario: &Scenario) -> Result<Report, Message> {
     let (plant, relay) = (&scenario.plant, &scenario.relay);
-    let prediction = predict(plant, relay).map_err(|e| e.to_string())?;
-    let long_run = scenario.long_run(&prediction).map_err(|e| e.to_string())?;
+    let prediction = predict(plant, relay).map_err(Message::from)?;
+    let long_run = scenario.long_run(&prediction).map_err(Message::from)?;
     let trust = match long_run.outcome {
         Some(outcome) => prediction.trust_after(plant, relay, outcome),
         None => prediction.trust.clone(),
@@ -105,8 +113,8 @@ impl Report {
     }
 
     /// Outcome and how far the describing function holds.
-    fn sentences(&self) -> String {
-        format!("{} {}", self.long_run.text, self.trust.text)
+    fn sentences(&self) -> Message {
+        self.long_run.text.clone().and(&self.trust.text)
     }
 }
 
@@ -166,7 +174,7 @@ fn ultimate_json(report: &Report) -> serde_json::Value {
 
 fn text(report: &Report) -> String {
     let p = &report.prediction;
-    let mut out = format!("{}\n\n", say(&report.sentences()));
+    let mut out = format!("{}\n\n", say(report.sentences()));
     let describing: Vec<Cycle> = p.describing_function.iter().map(|i| i.cycle).collect();
     let exact: Vec<Cycle> = p.exact.iter().map(|c| c.cycle).collect();
     let mut table = CycleTable::default();
@@ -181,9 +189,9 @@ fn text(report: &Report) -> String {
         row(&mut table, "simulated", &cycle);
     }
     out += &table.text().unwrap_or_default();
-    let ultimate = report.ultimate.as_ref().map(|u| u.text.as_str());
-    let limits = report.limits.text();
-    let _ = writeln!(out, "{}", say(ultimate.unwrap_or(limits.trim_start())));
+    let ultimate = report.ultimate.as_ref().map(|u| u.text.clone());
+    let text = ultimate.unwrap_or_else(|| report.limits.text());
+    let _ = writeln!(out, "{}", say(text));
     out
 }
 
@@ -205,10 +213,10 @@ fn rows(table: &mut CycleTable, name: &str, cycles: &[Cycle]) {
         row(table, name, cycle);
     }
     if let Some(last) = folded.last() {
-        let words = format!(
-            "{} more of this family down to a period of {:.9} s: all unstable",
+        let words = msg!(
+            "{} more of this family down to a period of {} s: all unstable",
             folded.len(),
-            last.period
+            fixed(last.period, 9)
         );
         table.words(name, &words);
     }

@@ -1,10 +1,10 @@
 //! `hysteron limit-cycle` on a drive: the motor's cycle inside the gap.
 
-use std::fmt::Write as _;
-
 use hysteron_core::drive::{
     Command, Direction, DriftingCycle, DriveInput, EventKind, drifting_cycle, run, summarize,
 };
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::uncertain::digits;
 use serde_json::json;
 
@@ -24,11 +24,11 @@ pub struct DriveReport {
 }
 
 impl DriveReport {
-    pub fn new(input: &DriveInput) -> Result<Self, String> {
+    pub fn new(input: &DriveInput) -> Result<Self, Message> {
         let Command::Relay(relay) = input.command else {
-            return Err("a drive under a constant torque has no limit cycle".to_owned());
+            return Err("a drive under a constant torque has no limit cycle".into());
         };
-        let done = run(input).map_err(|e| e.to_string())?;
+        let done = run(input).map_err(Message::from)?;
         let ups: Vec<_> = done
             .events
             .iter()
@@ -74,42 +74,51 @@ impl DriveReport {
             "simulated": self.simulated.map(|(period, amplitude)| json!({"period": period, "amplitude": amplitude})),
             "ultimate": null,
             "exists": self.cycle.is_some(),
-            "text": self.text(),
+            "text": format!("{}\n", Message::list("\n", self.lines())),
         })
     }
 
-    pub fn text(&self) -> String {
-        let mut text = String::new();
+    pub fn lines(&self) -> Vec<Message> {
         let Some(cycle) = &self.cycle else {
-            return "The relay cannot keep the motor swinging: there is no cycle, and no amplitude (half of peak to peak).\n"
-                .to_owned();
+            return vec![
+                "The relay cannot keep the motor swinging: there is no cycle, and no amplitude (half of peak to peak)."
+                    .into(),
+            ];
         };
-        let _ = writeln!(
-            text,
-            "In the gap the motor's velocity oscillates: period {:.9} s, amplitude {:.9} rad/s or m/s (half of peak to peak).",
-            cycle.period,
-            amplitude(cycle)
-        );
-        let _ = writeln!(
-            text,
-            "It swings over {} rad or m, {:.1} % of the gap, and drifts by {} a period, {} a second{}.",
+        let mut lines = vec![msg!(
+            "In the gap the motor's velocity oscillates: period {} s, amplitude {} rad/s or m/s (half of peak to \
+             peak).",
+            fixed(cycle.period, 9),
+            fixed(amplitude(cycle), 9)
+        )];
+        let (swing, share) = (
             digits(cycle.swing, DIGITS),
-            100.0 * cycle.swing / self.gap,
-            digits(cycle.drift, DIGITS),
-            digits(cycle.drift_velocity(), DIGITS),
-            match self.direction {
-                Some(Direction::Against) => ": against the stronger push, friction outweighs delay",
-                Some(Direction::With) => ": with the stronger push, delay outweighs friction",
-                _ => "",
-            }
+            fixed(100.0 * cycle.swing / self.gap, 1),
         );
+        let [drift, velocity] = [cycle.drift, cycle.drift_velocity()].map(|v| digits(v, DIGITS));
+        lines.push(match self.direction {
+            Some(Direction::Against) => msg!(
+                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second: against the \
+                 stronger push, friction outweighs delay.", swing, share, drift, velocity),
+            Some(Direction::With) => msg!(
+                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second: with the \
+                 stronger push, delay outweighs friction.", swing, share, drift, velocity),
+            _ => msg!(
+                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second.",
+                swing,
+                share,
+                drift,
+                velocity
+            ),
+        });
         if let Some((period, amplitude)) = self.simulated {
-            let _ = writeln!(
-                text,
-                "Simulated, at the end of the run: period {period:.9} s, amplitude {amplitude:.9}."
-            );
+            lines.push(msg!(
+                "Simulated, at the end of the run: period {} s, amplitude {}.",
+                fixed(period, 9),
+                fixed(amplitude, 9)
+            ));
         }
-        text
+        lines
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::on_off::{Balance, OnOffCycle, Settled, describing_function, settled};
 use hysteron_core::scenario::OnOffScenario;
 use hysteron_core::simulate::Noise;
@@ -25,10 +27,10 @@ pub struct OnOffReport {
 }
 
 impl OnOffReport {
-    pub fn new(scenario: &OnOffScenario) -> Result<Self, String> {
+    pub fn new(scenario: &OnOffScenario) -> Result<Self, Message> {
         let on_off = &scenario.on_off;
         Ok(Self {
-            settled: settled(on_off).map_err(|e| e.to_string())?,
+            settled: settled(on_off).map_err(Message::from)?,
             describing_function: describing_function(on_off),
             holds: on_off.relay.min_on.max(on_off.relay.min_off) > 0.0,
             noise: scenario.noise,
@@ -36,30 +38,31 @@ impl OnOffReport {
     }
 
     /// What is said, with a word where the describing function says nothing.
-    fn sentences(&self) -> String {
+    fn sentences(&self) -> Message {
         let exact = self.settled.exact.as_ref();
         let stable = |b: &&Balance| b.stable == Some(true);
         let beside = match &self.describing_function {
             None => {
-                " The describing function is not given: with three positions it is known for outputs alike in both \
+                "The describing function is not given: with three positions it is known for outputs alike in both \
                  directions and a reference of 0."
-                    .to_owned()
+                    .into()
             }
             Some(all) if all.is_empty() && self.holds => {
-                " The describing function sees no oscillation that keeps the shortest times.".to_owned()
+                "The describing function sees no oscillation that keeps the shortest times.".into()
             }
             Some(all) if all.is_empty() => {
-                " The describing function sees no oscillation.".to_owned()
+                "The describing function sees no oscillation.".into()
             }
             Some(all) => all
                 .iter()
                 .find(stable)
                 .zip(exact)
-                .map_or_else(String::new, |(b, c)| {
+                .map_or_else(Message::default, |(b, c)| {
                     off_by([b.period, b.amplitude], [c.period, c.amplitude])
                 }),
         };
-        format!("{}{beside}{}", self.settled.text, without_noise(self.noise))
+        let text = self.settled.text.clone().and(beside);
+        text.and(without_noise(self.noise))
     }
 
     pub fn json(&self) -> Value {
@@ -92,7 +95,7 @@ impl OnOffReport {
     }
 
     pub fn text(&self) -> String {
-        let mut out = format!("{}\n", say(&self.sentences()));
+        let mut out = format!("{}\n", say(self.sentences()));
         let mut table = CycleTable::default();
         for b in self.describing_function.iter().flatten() {
             table.row("describing function", b.period, b.amplitude, b.stable);
@@ -116,10 +119,11 @@ impl OnOffReport {
             .or(self.settled.simulated.as_ref());
         if let Some(cycle) = shown {
             let parts = cycle.positions.iter();
-            let parts: Vec<String> = parts
-                .map(|(position, time)| format!("{} {time:.6} s", position.name()))
-                .collect();
-            let parts = format!("In each period: {}.", parts.join(", "));
+            let parts = parts.map(|(position, time)| {
+                let words = format!("{} {{}}", position.name());
+                Message::Words(words.into(), vec![format!("{time:.6} s").into()])
+            });
+            let parts = msg!("In each period: {}.", Message::list(", ", parts));
             let _ = writeln!(out, "{}", say(&parts));
         }
         out

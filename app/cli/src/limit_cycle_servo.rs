@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 
 use hysteron_core::hunting::{HuntingBalance, HuntingCycle, Settled, describing_function, settled};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::scenario::ServoScenario;
 use hysteron_core::simulate::Noise;
 use hysteron_work::language::say;
@@ -22,28 +24,29 @@ pub struct ServoReport {
 }
 
 impl ServoReport {
-    pub fn new(scenario: &ServoScenario) -> Result<Self, String> {
+    pub fn new(scenario: &ServoScenario) -> Result<Self, Message> {
         let servo = &scenario.servo;
         Ok(Self {
-            settled: settled(servo).map_err(|e| format!("[servo]: {e}"))?,
+            settled: settled(servo).map_err(|e| msg!("[servo]: {}", e))?,
             describing_function: describing_function(servo),
             noise: scenario.noise,
         })
     }
 
-    fn sentences(&self) -> String {
+    fn sentences(&self) -> Message {
         let stable = |b: &&HuntingBalance| b.stable == Some(true);
         let beside = if self.describing_function.is_empty() {
-            " The describing function sees no oscillation.".to_owned()
+            "The describing function sees no oscillation.".into()
         } else {
             let found = self.describing_function.iter().find(stable);
             found
                 .zip(self.settled.exact.as_ref())
-                .map_or_else(String::new, |(b, c)| {
+                .map_or_else(Message::default, |(b, c)| {
                     off_by([b.period, b.amplitude], [c.period, c.amplitude])
                 })
         };
-        format!("{}{beside}{}", self.settled.text, without_noise(self.noise))
+        let text = self.settled.text.clone().and(beside);
+        text.and(without_noise(self.noise))
     }
 
     pub fn json(&self) -> Value {
@@ -77,7 +80,7 @@ impl ServoReport {
     }
 
     pub fn text(&self) -> String {
-        let mut out = format!("{}\n", say(&self.sentences()));
+        let mut out = format!("{}\n", say(self.sentences()));
         let mut table = CycleTable::default();
         for b in &self.describing_function {
             table.row("describing function", b.period, b.amplitude, b.stable);

@@ -7,6 +7,8 @@ use hysteron_core::criticism::{DiagnosisJob, DiscoveryJob};
 use hysteron_core::diagnosis::{Diagnosis, Discovery, Limits};
 use hysteron_core::effect::{EffectId, VISCOUS_FRICTION};
 use hysteron_core::measurement::{ImportOptions, Mapping, Measurement};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput, Tongue};
 use hysteron_core::user_model::UserModel;
@@ -27,7 +29,7 @@ pub struct Setup<'a> {
 pub struct Report {
     pub name: String,
     /// What the import had to assume or leave out.
-    notes: Vec<String>,
+    notes: Vec<Message>,
     diagnosis: Diagnosis,
     /// The formula of what is left, if that is wanted.
     discovery: Option<Discovery>,
@@ -46,8 +48,8 @@ struct Line<'a> {
     diagnosis: &'a Diagnosis,
     #[serde(skip_serializing_if = "Option::is_none")]
     discovery: Option<&'a Discovery>,
-    #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    notes: &'a [String],
+    #[serde(skip_serializing_if = "<[Message]>::is_empty")]
+    notes: &'a [Message],
 }
 
 impl Report {
@@ -100,13 +102,13 @@ impl Report {
         } else {
             String::new()
         };
-        let seconds = say(&format!("({:.1} s)", self.diagnosis.seconds));
+        let seconds = say(format!("({:.1} s)", self.diagnosis.seconds));
         format!("{found}{rest} {seconds}")
     }
 }
 
 /// Diagnoses one file; `show` hears of progress.
-pub fn one(file: &Path, setup: &Setup, show: impl FnMut(f64, &str)) -> Result<Report, String> {
+pub fn one(file: &Path, setup: &Setup, show: impl FnMut(f64, &Message)) -> Result<Report, Message> {
     let arguments = setup.arguments;
     let options = ImportOptions {
         kind: arguments.kind.map(Into::into),
@@ -126,8 +128,8 @@ pub fn of(
     measurement: &Measurement,
     source: (&Path, &[u8]),
     setup: &Setup,
-    mut show: impl FnMut(f64, &str),
-) -> Result<Report, String> {
+    mut show: impl FnMut(f64, &Message),
+) -> Result<Report, Message> {
     let arguments = setup.arguments;
     let started = Instant::now();
     let name = measurement.name.clone();
@@ -136,14 +138,14 @@ pub fn of(
     for effect in &arguments.effect {
         given
             .add_candidate(effect)
-            .map_err(|e| format!("--effect: {e}"))?;
+            .map_err(|e| msg!("--effect: {}", e))?;
     }
     let mut limits = Limits::of(measurement);
     limits
         .set(arguments.limits.as_deref().unwrap_or_default())
-        .map_err(|e| format!("--limits: {e}"))?;
+        .map_err(|e| msg!("--limits: {}", e))?;
     let mut job = DiagnosisJob::with_model(measurement, &given)
-        .map_err(|e| format!("{name}: {e}"))?
+        .map_err(|e| msg!("{}: {}", Message::name(name.clone()), e))?
         .within(limits)
         .with_crew(&cores::all());
     loop {
@@ -151,7 +153,8 @@ pub fn of(
             Progress::Running { fraction, text } => show(fraction, &text),
             Progress::Done(mut diagnosis) => {
                 for step in &diagnosis.steps {
-                    step.checked().map_err(|e| format!("{name}: {e}"))?;
+                    step.checked()
+                        .map_err(|e| msg!("{}: {}", Message::name(name.clone()), e))?;
                 }
                 let discovery = if arguments.discover {
                     Some(discover(
@@ -178,7 +181,7 @@ pub fn of(
                         provenance: &provenance(source.0, arguments, source.1),
                         tongue: Tongue {
                             code: spoken().code(),
-                            say,
+                            say: |text| say(text),
                         },
                     }))
                 });
@@ -205,8 +208,8 @@ fn discover(
     diagnosis: &Diagnosis,
     given: &UserModel,
     limits: Limits,
-    show: &mut impl FnMut(f64, &str),
-) -> Result<Discovery, String> {
+    show: &mut impl FnMut(f64, &Message),
+) -> Result<Discovery, Message> {
     let last = diagnosis.steps.last().filter(|_| diagnosis.verdict.unknown);
     let found: Vec<EffectId> = last.map_or_else(Vec::new, |step| {
         let effects = step.effects.iter().copied();

@@ -3,6 +3,8 @@
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::simulate::Noise;
 use hysteron_work::language::say;
 
@@ -16,10 +18,10 @@ pub enum Format {
 }
 
 /// Prints what a subcommand has to say, or the one line that says what is wrong with its input.
-pub fn finish(result: Result<String, String>) -> ExitCode {
+pub fn finish(result: Result<String, Message>) -> ExitCode {
     match result {
         Ok(output) => print(&output),
-        Err(line) => fail(&line, 2),
+        Err(line) => fail(line, 2),
     }
 }
 
@@ -40,13 +42,14 @@ pub fn write_error(error: &io::Error) -> ExitCode {
     if error.kind() == io::ErrorKind::BrokenPipe {
         ExitCode::SUCCESS
     } else {
-        fail(&format!("the output cannot be written: {error}"), 1)
+        let cause = Message::name(error.to_string());
+        fail(msg!("the output cannot be written: {}", cause), 1)
     }
 }
 
 /// Says in one line what is wrong, in the language that is spoken; the exit code.
-pub fn fail(message: &str, code: u8) -> ExitCode {
-    complain(&say(message));
+pub fn fail(message: impl Into<Message>, code: u8) -> ExitCode {
+    complain(&say(message.into()));
     ExitCode::from(code)
 }
 
@@ -60,37 +63,36 @@ pub fn complain(message: &str) {
     let _ = writeln!(io::stderr(), "hysteron: {}", words.join(" "));
 }
 
-/// Each line in the language that is spoken, with its indent.
-pub fn say_lines(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for line in text.lines() {
-        let words = line.trim_start();
-        out.push_str(&line[..line.len() - words.len()]);
-        out.push_str(&say(words));
-        out.push('\n');
-    }
-    out
+/// Each line in the language that is spoken.
+pub fn say_lines(lines: &[Message]) -> String {
+    lines.iter().map(|line| say(line) + "\n").collect()
 }
 
 /// How far a prediction of period and amplitude is off, in a sentence.
-pub fn off_by(predicted: [f64; 2], exact: [f64; 2]) -> String {
+pub fn off_by(predicted: [f64; 2], exact: [f64; 2]) -> Message {
     let [period, amplitude] = [0, 1].map(|i| 100.0 * (predicted[i] / exact[i] - 1.0));
     let trusted = period.abs() <= TRUSTED && amplitude.abs() <= TRUSTED;
-    let warning = if trusted {
-        ""
+    let [period, amplitude] = [period, amplitude].map(|off| format!("{off:+.1}"));
+    if trusted {
+        msg!(
+            "The describing function is off by {} % in period and {} % in amplitude.",
+            period,
+            amplitude
+        )
     } else {
-        ": do not trust it here"
-    };
-    format!(
-        " The describing function is off by {period:+.1} % in period and {amplitude:+.1} % in amplitude{warning}."
-    )
+        msg!(
+            "The describing function is off by {} % in period and {} % in amplitude: do not trust it here.",
+            period,
+            amplitude
+        )
+    }
 }
 
 /// Beside an answer for a loop without noise, where the file has some; nothing where it has none.
 pub fn without_noise(noise: Option<Noise>) -> &'static str {
     noise.map_or(
         "",
-        |_| " The noise of the file is left out here; simulate has it.",
+        |_| "The noise of the file is left out here; simulate has it.",
     )
 }
 

@@ -2,6 +2,7 @@
 
 use std::io::{self, IsTerminal as _, Write as _};
 
+use hysteron_core::message::Message;
 use hysteron_work::language::say;
 
 /// One line on stderr that is written over again and again; nothing where stderr is no terminal.
@@ -18,7 +19,7 @@ impl ProgressLine {
         }
     }
 
-    pub fn show(&mut self, fraction: f64, text: &str) {
+    pub fn show(&mut self, fraction: f64, text: &Message) {
         if !self.terminal {
             return;
         }

@@ -8,6 +8,8 @@ use hysteron_core::criticism::screen;
 use hysteron_core::diagnosis::{Parameter, Screening, Subset};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::uncertain::with_error;
 use hysteron_work::language::say;
 
@@ -38,7 +40,7 @@ pub struct Arguments {
 }
 
 /// The screening, or one line that says what is wrong with the input.
-pub fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, Message> {
     let options = ImportOptions {
         kind: arguments.kind.map(Into::into),
         mapping: arguments.map.clone().unwrap_or_default(),
@@ -54,19 +56,28 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
         Format::Text => Ok(text(name, &screening, &measurement.warnings)),
         Format::Json => serde_json::to_string_pretty(&screening)
             .map(|json| json + "\n")
-            .map_err(|e| format!("{name}: the screening cannot be written as JSON: {e}")),
+            .map_err(|e| {
+                msg!(
+                    "{}: the screening cannot be written as JSON: {}",
+                    Message::name(name.clone()),
+                    Message::name(e.to_string())
+                )
+            }),
     }
 }
 
-fn text(name: &str, screening: &Screening, notes: &[String]) -> String {
+fn text(name: &str, screening: &Screening, notes: &[Message]) -> String {
     let mut out = format!(
         "{}: {}\n",
         name.replace(char::is_control, " "),
-        say(&format!("{} samples", screening.samples))
+        say(msg!("{} samples", screening.samples))
     );
     let _ = writeln!(out, "{}", say(&screening.input_check.text));
     if let Some(left) = screening.left_by_body {
-        let alone = format!("The body alone leaves {:.1} % of the motion.", 100.0 * left);
+        let alone = msg!(
+            "The body alone leaves {} % of the motion.",
+            fixed(100.0 * left, 1)
+        );
         let _ = writeln!(out, "{}", say(&alone));
     }
     match screening.subsets.as_slice() {
@@ -87,17 +98,18 @@ fn text(name: &str, screening: &Screening, notes: &[String]) -> String {
     for note in notes {
         let _ = writeln!(out, "{}: {}", say("Note"), say(note));
     }
-    let _ = writeln!(out, "{}", say(&format!("({:.2} s)", screening.seconds)));
+    let _ = writeln!(out, "{}", say(format!("({:.2} s)", screening.seconds)));
     out
 }
 
 fn subset(out: &mut String, subset: &Subset) {
-    let names: Vec<&str> = subset.effects.iter().map(|id| name_of(*id)).collect();
-    let names = match names.as_slice() {
-        [] => "the body alone".to_owned(),
-        names => names.join(" and "),
+    let names = subset.effects.iter().map(|id| name_of(*id));
+    let names = if subset.effects.is_empty() {
+        "the body alone".into()
+    } else {
+        Message::list(" and ", names)
     };
-    let left = format!("{:.1} % of the motion is left", 100.0 * subset.left);
+    let left = msg!("{} % of the motion is left", fixed(100.0 * subset.left, 1));
     let _ = writeln!(out, "  {}; {}", say(&names), say(&left));
     for parameter in &subset.parameters {
         let _ = writeln!(out, "    {}", line(parameter));
@@ -113,6 +125,6 @@ fn line(parameter: &Parameter) -> String {
         unit,
         ..
     } = parameter;
-    let value = say(&with_error(*value, *std_error, unit));
+    let value = say(with_error(*value, *std_error, unit));
     format!("{name:<8} {value:<32} {}", say(label))
 }

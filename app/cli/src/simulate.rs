@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use hysteron_core::count::counted;
 use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
 use hysteron_core::hunting::{self, HuntingError, HuntingRun};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::on_off;
 use hysteron_core::scenario::AnyScenario;
 use hysteron_core::simulate::{Cut, Noise, Trajectory};
@@ -31,11 +33,13 @@ pub struct Arguments {
 }
 
 /// What happened in words, or one line that says what is wrong with the input.
-pub fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, Message> {
     let shown = arguments.file.display();
     let (mut text, table, samples) = match read(&arguments.file)? {
         AnyScenario::Loop(scenario) => {
-            let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
+            let run = scenario
+                .run()
+                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
             let noise = scenario.options.noise;
             let samples = (run.time.as_slice(), run.output.as_slice());
             (
@@ -45,10 +49,13 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
             )
         }
         AnyScenario::OnOff(scenario) => {
-            let run = scenario.run().map_err(|e| format!("{shown}: {e}"))?;
+            let run = scenario
+                .run()
+                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
             let end = run.time.last().copied().unwrap_or(0.0);
             let mut said = switched(run.switches.len(), end, run.cut);
-            let cycle = on_off::settled(&scenario.on_off).map_err(|e| format!("{shown}: {e}"))?;
+            let cycle = on_off::settled(&scenario.on_off)
+                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
             say_settled(&mut said, &cycle.text, scenario.noise);
             let samples = (run.time.as_slice(), run.output.as_slice());
             (
@@ -58,49 +65,67 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
             )
         }
         AnyScenario::Servo(scenario) => {
-            let located = |e: HuntingError| format!("{shown}: {e}");
+            let located = |e: HuntingError| msg!("{}: {}", Message::name(shown.to_string()), e);
             let run = scenario.run().map_err(located)?;
             let found = hunting::settled(&scenario.servo).map_err(|e| located(e.into()))?;
             let said = servo_summary(&run, &found.text, scenario.noise);
             (said, servo_table(&run, scenario.noise), run.time.len())
         }
         AnyScenario::Drive(input) => {
-            let run = drive::run(&input).map_err(|e| format!("{shown}: {e}"))?;
+            let run = drive::run(&input)
+                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
             let said = drive_summary(&input, &run);
             (said, drive_table(&run), run.time.len())
         }
     };
     if let Some(path) = &arguments.csv {
-        std::fs::write(path, table)
-            .map_err(|e| format!("{} cannot be written: {e}", path.display()))?;
-        let _ = writeln!(
-            text,
+        std::fs::write(path, table).map_err(|e| {
+            msg!(
+                "{} cannot be written: {}",
+                Message::name(path.display().to_string()),
+                Message::name(e.to_string())
+            )
+        })?;
+        text.push(msg!(
             "{} written to {}.",
             counted(samples, "sample"),
-            path.display()
-        );
+            Message::name(path.display().to_string())
+        ));
     }
     Ok(say_lines(&text))
 }
 
 /// Reads a scenario file.
-pub fn read(path: &Path) -> Result<AnyScenario, String> {
+pub fn read(path: &Path) -> Result<AnyScenario, Message> {
     let shown = path.display();
     if path.is_dir() {
-        return Err(format!("{shown} is a directory; expected a TOML file"));
+        return Err(msg!(
+            "{} is a directory; expected a TOML file",
+            Message::name(shown.to_string())
+        ));
     }
-    let bytes = std::fs::read(path).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let bytes = std::fs::read(path).map_err(|e| {
+        msg!(
+            "{} cannot be read: {}",
+            Message::name(shown.to_string()),
+            Message::name(e.to_string())
+        )
+    })?;
     let text = std::str::from_utf8(&bytes).map_err(|e| {
         let line = bytes[..e.valid_up_to()].split(|b| *b == b'\n').count();
-        format!("{shown}, line {line}: not UTF-8 text; expected a TOML file")
+        msg!(
+            "{}, line {}: not UTF-8 text; expected a TOML file",
+            Message::name(shown.to_string()),
+            line
+        )
     })?;
-    AnyScenario::from_toml(text).map_err(|e| format!("{shown}: {e}"))
+    AnyScenario::from_toml(text).map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))
 }
 
 /// How many switches there were, and why no more.
-fn switched(switches: usize, end: f64, cut: Option<Cut>) -> String {
+fn switched(switches: usize, end: f64, cut: Option<Cut>) -> Vec<Message> {
     let switches = counted(switches, "switch");
-    let mut text = format!("{switches} up to {end:.6} s.\n");
+    let mut text = vec![msg!("{} up to {} s.", switches, fixed(end, 6))];
     let why = cut.map(|cut| match cut {
         Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
         Cut::TooManySwitches => {
@@ -110,31 +135,30 @@ fn switched(switches: usize, end: f64, cut: Option<Cut>) -> String {
             "A part of the plant is far too fast for the rest: the run was cut there after millions of steps."
         }
     });
-    if let Some(why) = why {
-        let _ = writeln!(text, "{why}");
-    }
+    text.extend(why.map(Message::from));
     text
 }
 
-fn summary(run: &Trajectory) -> String {
+fn summary(run: &Trajectory) -> Vec<Message> {
     let mut text = switched(run.rises.len() + run.falls.len(), run.end(), run.cut);
     if !run.sliding.is_empty() {
         let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
-        let _ = writeln!(
-            text,
-            "The output slides along the threshold {}, {total:.6} s in all.",
-            counted(run.sliding.len(), "time")
-        );
+        text.push(msg!(
+            "The output slides along the threshold {}, {} s in all.",
+            counted(run.sliding.len(), "time"),
+            fixed(total, 6)
+        ));
     }
     match run.settled(SETTLED) {
         Some((period, amplitude)) => {
-            let _ = writeln!(
-                text,
-                "It oscillates: period {period:.9} s, amplitude {amplitude:.9} (half of peak to peak)."
-            );
+            text.push(msg!(
+                "It oscillates: period {} s, amplitude {} (half of peak to peak).",
+                fixed(period, 9),
+                fixed(amplitude, 9)
+            ));
         }
         None if run.cut.is_none() => {
-            let _ = writeln!(text, "It has not settled into an oscillation.");
+            text.push("It has not settled into an oscillation.".into());
         }
         None => {}
     }
@@ -142,13 +166,12 @@ fn summary(run: &Trajectory) -> String {
 }
 
 /// What becomes of a loop, which is found without the noise.
-fn say_settled(text: &mut String, settled: &str, noise: Option<Noise>) {
-    let without = if noise.is_some() {
-        "Without the noise: "
+fn say_settled(text: &mut Vec<Message>, settled: &Message, noise: Option<Noise>) {
+    text.push(if noise.is_some() {
+        msg!("Without the noise: {}", settled)
     } else {
-        ""
-    };
-    let _ = writeln!(text, "{without}{settled}");
+        settled.clone()
+    });
 }
 
 /// Noise at the sampling instants.
@@ -173,40 +196,38 @@ fn table((time, output): (&[f64], &[f64]), input: &[[f64; 2]], noise: Option<Noi
 }
 
 /// What a drive did.
-fn drive_summary(input: &DriveInput, run: &DriveRun) -> String {
-    let mut text = String::new();
+fn drive_summary(input: &DriveInput, run: &DriveRun) -> Vec<Message> {
     let end = run.time.last().copied().unwrap_or(0.0);
-    let _ = writeln!(
-        text,
-        "{} and {} up to {end:.6} s.",
+    let mut text = vec![msg!(
+        "{} and {} up to {} s.",
         counted(run.switches(), "switch"),
-        counted(run.impacts(), "impact")
-    );
+        counted(run.impacts(), "impact"),
+        fixed(end, 6)
+    )];
     if let Some(time) = run.chattering {
-        let _ = writeln!(
-            text,
-            "It switches without end at {time:.6} s, and the run was cut there."
-        );
+        text.push(msg!(
+            "It switches without end at {} s, and the run was cut there.",
+            fixed(time, 6)
+        ));
     }
     let found: Summary = summarize(input, run);
     if let Some(drift) = found.drifts.first() {
-        let _ = writeln!(
-            text,
-            "In the gap the motor drifts at {} rad/s (or m/s) from {:.3} s to {:.3} s.",
+        text.push(msg!(
+            "In the gap the motor drifts at {} rad/s (or m/s) from {} s to {} s.",
             digits(drift.velocity, DIGITS),
-            drift.from,
-            drift.to
-        );
+            fixed(drift.from, 3),
+            fixed(drift.to, 3)
+        ));
     }
     let count = found.traverses.len();
     if count > 0 {
         let mean = found.traverses.iter().map(|t| t.travel).sum::<f64>() / count as f64;
-        let _ = writeln!(
-            text,
-            "It crosses the gap {}, {mean:.6} rad (or m) from contact to contact; the gap is {:.6}.",
+        text.push(msg!(
+            "It crosses the gap {}, {} rad (or m) from contact to contact; the gap is {}.",
             counted(count, "time"),
-            2.0 * input.drive.half_gap
-        );
+            fixed(mean, 6),
+            fixed(2.0 * input.drive.half_gap, 6)
+        ));
     }
     text
 }
@@ -222,15 +243,17 @@ fn drive_table(run: &DriveRun) -> String {
 }
 
 /// What a servo did, and what becomes of it.
-fn servo_summary(run: &HuntingRun, settled: &str, noise: Option<Noise>) -> String {
+fn servo_summary(run: &HuntingRun, settled: &Message, noise: Option<Noise>) -> Vec<Message> {
     let end = run.time.last().copied().unwrap_or(0.0);
     let stuck = run.stuck.iter().fold(0.0, |sum, s| sum + (s[1] - s[0]));
-    let mut text = format!(
-        "The motor sticks {} up to {end:.6} s, {stuck:.6} s in all.\n",
-        counted(run.stuck.len(), "time")
-    );
+    let mut text = vec![msg!(
+        "The motor sticks {} up to {} s, {} s in all.",
+        counted(run.stuck.len(), "time"),
+        fixed(end, 6),
+        fixed(stuck, 6)
+    )];
     if run.cut {
-        let _ = writeln!(text, "It runs away, and the run was cut there.");
+        text.push("It runs away, and the run was cut there.".into());
     }
     say_settled(&mut text, settled, noise);
     text

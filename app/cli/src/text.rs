@@ -7,6 +7,8 @@ use hysteron_core::diagnosis::{
 };
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::uncertain::{brief, with_error};
 use hysteron_work::language::say;
 
@@ -19,20 +21,20 @@ const BAR: usize = 40;
 const LOGARITHMIC_FROM: f64 = 40.0;
 
 /// The report on the measurement called `name`, with notes of its import; ends with a newline.
-pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
+pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[Message]) -> String {
     let mut out = String::new();
-    let kind = match diagnosis.kind {
-        Kind::Drive => "drive",
-        Kind::Process => "process",
-    };
     let title: String = name
         .chars()
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
+    let title = Message::name(title);
     paragraph(
         &mut out,
         "",
-        &format!("{title}: {} samples of a {kind}", diagnosis.samples),
+        match diagnosis.kind {
+            Kind::Drive => msg!("{}: {} samples of a drive", title, diagnosis.samples),
+            Kind::Process => msg!("{}: {} samples of a process", title, diagnosis.samples),
+        },
     );
     for note in notes {
         bullet(&mut out, note);
@@ -43,10 +45,10 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
         bullet(&mut out, &check.text);
     }
     for overruled in &diagnosis.verdict.overruled {
-        bullet(&mut out, &overruled.words());
+        bullet(&mut out, overruled.words());
     }
     for noise in &diagnosis.noise {
-        bullet(&mut out, &noise.words());
+        bullet(&mut out, noise.words());
     }
     for (i, step) in diagnosis.steps.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|k| diagnosis.steps.get(k));
@@ -59,14 +61,18 @@ pub fn render(diagnosis: &Diagnosis, name: &str, notes: &[String]) -> String {
     heading(&mut out, "Verdict");
     paragraph(&mut out, "  ", &diagnosis.verdict.text);
     if let Some(experiment) = &diagnosis.verdict.next_experiment
-        && !diagnosis.verdict.text.contains(experiment.as_str())
+        && !diagnosis
+            .verdict
+            .text
+            .to_string()
+            .contains(&experiment.to_string())
     {
-        paragraph(&mut out, "  ", &format!("Next experiment: {experiment}"));
+        paragraph(&mut out, "  ", msg!("Next experiment: {}", experiment));
     }
     for proposal in &diagnosis.verdict.experiments {
         other_experiments(&mut out, proposal);
     }
-    let took = say(&format!("Took {:.2} s.", diagnosis.seconds));
+    let took = say(msg!("Took {} s.", fixed(diagnosis.seconds, 2)));
     let _ = writeln!(out, "\n{took}");
     out
 }
@@ -87,7 +93,7 @@ pub fn formulas(discovery: &Discovery) -> String {
         .filter(|f| f.on_front || f.in_class);
     for formula in listed {
         let mark = if formula.in_class { '*' } else { ' ' };
-        let (length, error) = (formula.length, say(&brief(formula.error)));
+        let (length, error) = (formula.length, say(brief(formula.error)));
         let _ = writeln!(out, "{mark} {length:6}  {error:>6}  {}", formula.formula);
     }
     if let Some(found) = discovery.found() {
@@ -95,7 +101,7 @@ pub fn formulas(discovery: &Discovery) -> String {
         let _ = writeln!(out, "  {again}: --effect \"{}\"", found.typed);
     }
     if let Some(experiment) = &discovery.experiment {
-        paragraph(out, "  ", &format!("Next experiment: {}", experiment.text));
+        paragraph(out, "  ", msg!("Next experiment: {}", &experiment.text));
         other_experiments(out, experiment);
     }
     text
@@ -112,24 +118,24 @@ fn other_experiments(out: &mut String, proposal: &NextExperiment) {
     }
     for other in &proposal.others {
         let times = other.times_noise();
-        bullet(out, &format!("{times} times the noise with {}", other.text));
+        bullet(out, msg!("{} times the noise with {}", times, &other.text));
     }
 }
 
 fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: bool, floor: f64) {
-    let title = before.map_or_else(|| "Baseline".to_owned(), |before| change(step, before));
-    heading(out, &title);
+    let title = before.map_or_else(|| "Baseline".into(), |before| change(step, before));
+    heading(out, title);
     paragraph(
         out,
         "  ",
-        &format!(
+        msg!(
             "Error {} times the noise on held-back data; a perfect model would leave {}.",
             brief(step.error),
             brief(floor)
         ),
     );
     if step.left > 0.0 {
-        let missed = format!("The model misses {} % of the motion.", percent(step.left));
+        let missed = msg!("The model misses {} % of the motion.", percent(step.left));
         paragraph(out, "  ", &missed);
     }
     // Of the last model all are said: the body is what it was found to be with all effects.
@@ -158,20 +164,20 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: 
 }
 
 /// What was added to and taken from the model before, such as `+ Coulomb friction`.
-fn change(step: &Step, before: &Step) -> String {
-    let only_in = |a: &Step, b: &Step, sign: &str| -> Vec<String> {
-        a.effects
-            .iter()
-            .filter(|e| !b.effects.contains(e))
-            .map(|e| format!("{sign} {}", name_of(*e)))
-            .collect()
+fn change(step: &Step, before: &Step) -> Message {
+    let only_in = |a: &Step, b: &Step| {
+        let of_a = a.effects.iter().filter(|e| !b.effects.contains(e));
+        of_a.map(|e| name_of(*e)).collect::<Vec<_>>()
     };
-    let mut parts = only_in(step, before, "+");
-    parts.extend(only_in(before, step, "-"));
-    if parts.is_empty() {
-        "Refitted".to_owned()
+    let added = only_in(step, before);
+    let added = added.into_iter().map(|name| msg!("+ {}", name));
+    let taken = only_in(before, step);
+    let taken = taken.into_iter().map(|name| msg!("- {}", name));
+    let changes = Message::list(" ", added.chain(taken));
+    if changes.is_empty() {
+        "Refitted".into()
     } else {
-        parts.join(" ")
+        changes
     }
 }
 
@@ -187,7 +193,7 @@ fn parameters(out: &mut String, list: &[&Parameter]) {
     let name = widest(list.iter().map(|p| p.name.as_str()));
     let width = widest(labels.iter().map(String::as_str));
     for (p, label) in list.iter().zip(&labels) {
-        let value = say(&with_error(p.value, p.std_error, &p.unit));
+        let value = say(with_error(p.value, p.std_error, &p.unit));
         line(
             out,
             &format!("  {:<name$}  {label:<width$}  {value}", p.name),
@@ -211,8 +217,8 @@ fn candidates(out: &mut String, list: &[Candidate]) {
     for (name, candidate) in rows {
         let head = format!(
             "  {name:<width$}  {:>9}  {:>10}  ",
-            say(&brief(candidate.error)),
-            say(&format!("{:.1}", candidate.delta_bic))
+            say(brief(candidate.error)),
+            say(format!("{:.1}", candidate.delta_bic))
         );
         let note = if candidate.equivalent_to.is_empty() {
             say(candidate.standing())
@@ -240,19 +246,17 @@ fn candidates(out: &mut String, list: &[Candidate]) {
 
 /// The error of every model and the noise floor as bars.
 fn chart(out: &mut String, diagnosis: &Diagnosis) {
-    let mut rows: Vec<(String, f64)> = Vec::new();
+    let mut rows: Vec<(Message, f64)> = Vec::new();
     let mut before: Option<&Step> = None;
     for step in &diagnosis.steps {
         rows.push((
-            before.map_or_else(|| "baseline".to_owned(), |b| change(step, b)),
+            before.map_or_else(|| "baseline".into(), |b| change(step, b)),
             step.error,
         ));
         before = Some(step);
     }
-    rows.push(("noise floor".to_owned(), diagnosis.noise_floor));
-    for (label, _) in &mut rows {
-        *label = say(label);
-    }
+    rows.push(("noise floor".into(), diagnosis.noise_floor));
+    let rows: Vec<(String, f64)> = rows.into_iter().map(|r| (say(r.0), r.1)).collect();
     let finite = || {
         rows.iter()
             .map(|r| r.1)
@@ -263,12 +267,12 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         finite().fold(f64::INFINITY, f64::min),
     );
     let logarithmic = most > LOGARITHMIC_FROM * least;
-    let scale = if logarithmic {
-        ", bars logarithmic"
+    let title = if logarithmic {
+        "Error step by step (times the noise, bars logarithmic)"
     } else {
-        ""
+        "Error step by step (times the noise)"
     };
-    heading(out, &format!("Error step by step (times the noise{scale})"));
+    heading(out, title);
     let width = widest(rows.iter().map(|r| r.0.as_str())).min(WIDTH - BAR - 14);
     for (label, error) in &rows {
         let label: String = label.chars().take(width).collect();
@@ -278,7 +282,7 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         } else {
             error / most
         };
-        let value = say(&brief(*error));
+        let value = say(brief(*error));
         line(
             out,
             &format!("  {label:<width$}  {value:>8}  {}", bar(share)),
@@ -316,9 +320,9 @@ fn widest<'a>(texts: impl Iterator<Item = &'a str>) -> usize {
 }
 
 /// A heading in the language that is spoken, as paragraphs and bullets are.
-fn heading(out: &mut String, text: &str) {
+fn heading(out: &mut String, text: impl Into<Message>) {
     let _ = writeln!(out);
-    let lines = wrap(&say(text), WIDTH);
+    let lines = wrap(&say(text.into()), WIDTH);
     let rule = lines.iter().map(|l| l.chars().count()).max().unwrap_or(0);
     for text in lines {
         line(out, &text);
@@ -326,14 +330,14 @@ fn heading(out: &mut String, text: &str) {
     line(out, &"-".repeat(rule));
 }
 
-fn paragraph(out: &mut String, indent: &str, text: &str) {
-    for piece in wrap(&say(text), WIDTH - indent.len()) {
+fn paragraph(out: &mut String, indent: &str, text: impl Into<Message>) {
+    for piece in wrap(&say(text.into()), WIDTH - indent.len()) {
         line(out, &format!("{indent}{piece}"));
     }
 }
 
-fn bullet(out: &mut String, text: &str) {
-    for (i, piece) in wrap(&say(text), WIDTH - 4).iter().enumerate() {
+fn bullet(out: &mut String, text: impl Into<Message>) {
+    for (i, piece) in wrap(&say(text.into()), WIDTH - 4).iter().enumerate() {
         line(
             out,
             &format!("{}{piece}", if i == 0 { "  - " } else { "    " }),

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::tuning::measured::{
     AmplitudeConvention, FittedModel, Form, MeasuredTuning, OpenError, Readings, TunedGains,
     Wishes, open, tune_readings,
@@ -103,22 +105,22 @@ impl FormName {
 struct Two([f64; 2]);
 
 impl FromStr for Two {
-    type Err = String;
+    type Err = Message;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, Message> {
         let numbers: Vec<f64> = text
             .split(',')
             .filter_map(|n| n.trim().parse().ok())
             .collect();
         match (numbers.as_slice(), text.split(',').count()) {
             ([a, b], 2) => Ok(Self([*a, *b])),
-            _ => Err("expected two numbers with a comma between them, such as 0,255".to_owned()),
+            _ => Err("expected two numbers with a comma between them, such as 0,255".into()),
         }
     }
 }
 
 /// What the test tells, or one line that says what is wrong with the input.
-pub fn run(arguments: &Arguments) -> Result<String, String> {
+pub fn run(arguments: &Arguments) -> Result<String, Message> {
     let wishes = Wishes {
         form: arguments.form.map(FormName::form),
         full_scale: arguments.full_scale,
@@ -132,21 +134,21 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
     if let Some(levels) = wishes.levels
         && !(levels.iter().all(|l| l.is_finite()) && levels[0] != levels[1] && levels[1] != 0.0)
     {
-        return Err("--levels must be two different numbers, the second not 0".to_owned());
+        return Err("--levels must be two different numbers, the second not 0".into());
     }
     if let Some(scale) = arguments.full_scale
         && !(scale.is_finite() && scale > 0.0)
     {
-        return Err(format!("--full-scale is {scale}: it must be above 0"));
+        return Err(msg!("--full-scale is {}: it must be above 0", scale));
     }
     let result = match (&arguments.file, of_numbers(arguments)?) {
         (Some(file), _) => of_file(file, arguments, &wishes)?,
         (None, Some(readings)) => {
             let settings = wishes.settings(Vec::new());
-            tune_readings(&readings, &settings).map_err(|e| e.to_string())?
+            tune_readings(&readings, &settings).map_err(Message::from)?
         }
         (None, None) => {
-            return Err("expected a file, or --amplitude, --period and --levels".to_owned());
+            return Err("expected a file, or --amplitude, --period and --levels".into());
         }
     };
     Ok(match arguments.format {
@@ -156,7 +158,7 @@ pub fn run(arguments: &Arguments) -> Result<String, String> {
 }
 
 /// What was read off a test, where that and no file is given.
-fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
+fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, Message> {
     let (Some(amplitude), Some(period), Some(levels), None) = (
         arguments.amplitude,
         &arguments.period,
@@ -173,9 +175,12 @@ fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
         } else {
             AmplitudeConvention::Half
         },
-        period: period
-            .parse()
-            .map_err(|_| format!("--period is {period}: expected the period in s, such as 47"))?,
+        period: period.parse().map_err(|_| {
+            msg!(
+                "--period is {}: expected the period in s, such as 47",
+                Message::name(period)
+            )
+        })?,
         levels: levels.0,
         hysteresis: arguments.hysteresis.unwrap_or(0.0),
         half_periods: arguments.half_periods.map(|t| t.0),
@@ -184,9 +189,9 @@ fn of_numbers(arguments: &Arguments) -> Result<Option<Readings>, String> {
 }
 
 /// What the file does not say itself.
-fn options(arguments: &Arguments) -> Result<ImportOptions, String> {
+fn options(arguments: &Arguments) -> Result<ImportOptions, Message> {
     let period = arguments.period.as_deref().map(str::parse::<Period>);
-    let period = period.transpose().map_err(|e| format!("--period: {e}"))?;
+    let period = period.transpose().map_err(|e| msg!("--period: {}", e))?;
     Ok(ImportOptions {
         kind: arguments.kind.map(Into::into),
         mapping: arguments.map.clone().unwrap_or_default(),
@@ -195,23 +200,32 @@ fn options(arguments: &Arguments) -> Result<ImportOptions, String> {
     })
 }
 
-fn of_file(file: &Path, arguments: &Arguments, wishes: &Wishes) -> Result<MeasuredTuning, String> {
+fn of_file(file: &Path, arguments: &Arguments, wishes: &Wishes) -> Result<MeasuredTuning, Message> {
     let shown = file.display();
     if file.is_dir() {
-        return Err(format!(
-            "{shown} is a directory; expected a CSV or MATLAB file, or a log"
+        return Err(msg!(
+            "{} is a directory; expected a CSV or MATLAB file, or a log",
+            Message::name(shown.to_string())
         ));
     }
-    let bytes = std::fs::read(file).map_err(|e| format!("{shown} cannot be read: {e}"))?;
+    let bytes = std::fs::read(file).map_err(|e| {
+        msg!(
+            "{} cannot be read: {}",
+            Message::name(shown.to_string()),
+            Message::name(e.to_string())
+        )
+    })?;
     let name = file
         .file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
     let opened = open(&name, &bytes, &options(arguments)?).map_err(|e| match e {
-        OpenError::Log(e) => format!("{shown}: {e}"),
-        OpenError::Import(e) => e.to_string(),
+        OpenError::Log(e) => msg!("{}: {}", Message::name(shown.to_string()), e),
+        OpenError::Import(e) => e.message(),
     })?;
-    let mut result = opened.tune(wishes).map_err(|e| format!("{shown}: {e}"))?;
+    let mut result = opened
+        .tune(wishes)
+        .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
     result.name = name.into_owned();
     Ok(result)
 }
@@ -327,7 +341,7 @@ fn model_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
             lag(0),
             lag(1),
             short(m.dead_time.value),
-            say(&format!("{:.2} %", 100.0 * m.left)),
+            say(format!("{:.2} %", 100.0 * m.left)),
         ]
     };
     let models = result.models.iter().map(row);
@@ -347,15 +361,9 @@ fn gain_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
     } else {
         ["ki [1/s]", "kd [s]"]
     };
-    let title = format!("gains, {} form", form.id());
-    let head = [
-        title.as_str(),
-        "kp",
-        integral,
-        derivative,
-        "phase margin",
-        "gain margin",
-    ];
+    let title = msg!("gains, {} form", form.id());
+    let words = ["kp", integral, derivative, "phase margin", "gain margin"];
+    let head = std::iter::once(title).chain(words.map(Message::from));
     let none = || "-".to_owned();
     let row = |g: &TunedGains| {
         let name = format!("{} {}", say(&g.name), g.controller.to_uppercase());
@@ -367,14 +375,14 @@ fn gain_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
         let mut row = vec![name, short(g.kp), integral, derivative];
         if g.stable || result.models.is_empty() {
             row.push(g.phase_margin_deg.map_or_else(none, |p| format!("{p:.0}°")));
-            row.push(g.gain_margin.map_or_else(none, |m| say(&format!("{m:.2}"))));
+            row.push(g.gain_margin.map_or_else(none, |m| say(format!("{m:.2}"))));
         } else {
             row.push(say("unstable on the model"));
         }
         row
     };
     let gains = result.gains.iter().map(row);
-    std::iter::once(head.map(say).to_vec())
+    std::iter::once(head.map(say).collect())
         .chain(gains)
         .collect()
 }
@@ -406,5 +414,5 @@ fn aligned(rows: &[Vec<String>]) -> String {
 
 /// Five significant digits.
 fn short(value: f64) -> String {
-    say(&digits(value, 5))
+    say(digits(value, 5))
 }

@@ -7,6 +7,8 @@ use crate::files::MEASUREMENT;
 use crate::notice::Notice;
 use crate::theme::Look;
 use crate::{lessons, link};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 impl HysteronApp {
     pub(super) fn carry_out(&mut self, ui: &egui::Ui, command: Command) {
@@ -100,13 +102,16 @@ impl HysteronApp {
         let link = self.link();
         ctx.copy_text(address::of(&link));
         let saying = match self.document().files().as_slice() {
-            [] => "The link to this page, as it is now, is copied.".to_owned(),
+            [] => "The link to this page, as it is now, is copied.".into(),
             [name] => {
-                format!("The link is copied. The file {name} is not part of it: send it along.")
+                msg!(
+                    "The link is copied. The file {} is not part of it: send it along.",
+                    Message::name(*name)
+                )
             }
-            names => format!(
+            names => msg!(
                 "The link is copied. The files {} are not part of it: send them along.",
-                names.join(", ")
+                Message::name(names.join(", "))
             ),
         };
         self.notice = Some(Notice::done(ctx, saying));

@@ -3,6 +3,7 @@
 use std::sync::mpsc::Sender;
 
 use egui::{Context, Rect};
+use hysteron_core::message::Message;
 
 use super::HysteronApp;
 use crate::export::{self, Table};
@@ -12,7 +13,7 @@ use crate::widgets::chart_menu::{self, Form, Given};
 /// Where files go.
 #[derive(Clone)]
 struct Exit {
-    said: Sender<String>,
+    said: Sender<Message>,
     diverted: Option<Sender<GivenFile>>,
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use hysteron_core::msg;
 use serde_json::Value;
 
 use super::{Lesson, after, find, markdown};
@@ -95,7 +96,7 @@ impl Study {
             .id_salt(lesson.id)
             .show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    ui.label(tr(format!("Lesson, {} minutes", lesson.minutes)));
+                    ui.label(tr(msg!("Lesson, {} minutes", lesson.minutes)));
                     let close = ui.button(tr("Close lesson"));
                     targets.note("lesson:close", ui, &close);
                     if close.clicked() {
@@ -153,9 +154,7 @@ impl Study {
             ui.colored_label(theme::readable(ui, theme::NOISE), tr("Right."));
             ui.label(question.right);
             if let Some(next) = after(lesson.id)
-                && ui
-                    .button(tr(format!("Next lesson: {}", next.title)))
-                    .clicked()
+                && ui.button(tr(msg!("Next lesson: {}", next.title))).clicked()
             {
                 commands.push(Command::Lesson(Some(next.id.to_owned())));
             }

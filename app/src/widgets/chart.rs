@@ -23,6 +23,8 @@ use crate::export::Table;
 use crate::language::tr;
 use crate::theme;
 pub use hysteron_core::curve::{envelope, extremes, sparse};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::Scale;
 pub use hysteron_core::uncertain::significant;
 
@@ -286,7 +288,11 @@ fn read_ui<R>(
 
 /// A plot in words: its axes, and what the keys read in it.
 fn words(axes: &[String; 2], text: Option<&str>) -> WidgetInfo {
-    let name = tr(format!("Plot: {} over {}", axes[1], axes[0]));
+    let name = tr(msg!(
+        "Plot: {} over {}",
+        Message::words(axes[1].clone()),
+        Message::words(axes[0].clone())
+    ));
     WidgetInfo {
         current_text_value: text.map(|t| t.replace('\n', "; ")),
         ..WidgetInfo::labeled(egui::Role::Image, true, name)

@@ -2,6 +2,7 @@
 
 use egui_plot::{GridInput, GridMark};
 use hysteron_core::curve::extremes;
+use hysteron_core::message::Message;
 use hysteron_core::uncertain::{Scale, power_of_ten, titled};
 
 use crate::language::tr_number;
@@ -46,10 +47,12 @@ pub(super) fn scale(axis: &str, size: f64) -> Scale {
 }
 
 /// The name of an axis with the unit in which it is read.
-pub(super) fn title(axis: &str, scale: &Scale) -> String {
+pub(super) fn title(axis: &str, scale: &Scale) -> Message {
     match axis.rsplit_once(" [") {
-        Some((name, _)) if axis.ends_with(']') => titled(name, &scale.unit),
-        _ => titled(axis, &scale.unit),
+        Some((name, _)) if axis.ends_with(']') => {
+            titled(Message::words(name.to_owned()), &scale.unit)
+        }
+        _ => titled(Message::words(axis.to_owned()), &scale.unit),
     }
 }
 
@@ -242,7 +245,7 @@ mod tests {
         let mark = |&(value, step_size)| GridMark { value, step_size };
         let marks = marks.iter().map(mark);
         let labels = marks.map(|mark| label(mark, scale.factor));
-        (title(axis, &scale), labels.collect())
+        (title(axis, &scale).to_string(), labels.collect())
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //! menu covers the plot, fulfils it.
 
 use egui::{Context, Id, Pos2, Rect, UiBuilder, vec2};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use crate::export::Table;
 use crate::language::tr;
@@ -104,7 +106,11 @@ pub fn ui(
     let mut child = ui.new_child(UiBuilder::new().id_salt(plot).max_rect(corner));
     child.spacing_mut().button_padding = vec2(2.0, 0.0);
     child.spacing_mut().item_spacing = vec2(0.0, 0.0);
-    let name = tr(format!("Menu of the plot: {} over {}", axes[1], axes[0]));
+    let name = tr(msg!(
+        "Menu of the plot: {} over {}",
+        Message::words(axes[1].clone()),
+        Message::words(axes[0].clone())
+    ));
     let button = egui::Button::new(egui::RichText::new("…").size(18.0))
         .frame(false)
         .min_size(vec2(side, side));

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use hysteron_core::figures::Check;
+use hysteron_core::msg;
 
 use crate::language::tr;
 use crate::theme;
@@ -75,8 +76,14 @@ fn reset_by_key(ui: &egui::Ui, response: &egui::Response) -> bool {
 }
 
 /// What a figure of the paper claims, and whether it is so with what is set now.
-pub fn claim_ui(ui: &mut egui::Ui, number: u32, title: &str, claim: &str, checks: &[Check]) {
-    ui.strong(tr(format!("Fig. {number}, {title}. {claim}")));
+pub fn claim_ui(
+    ui: &mut egui::Ui,
+    number: u32,
+    title: &'static str,
+    claim: &'static str,
+    checks: &[Check],
+) {
+    ui.strong(tr(msg!("Fig. {}, {}. {}", number, title, claim)));
     ui.horizontal_wrapped(|ui| {
         for (i, check) in checks.iter().enumerate() {
             let (mark, color) = if check.holds {

@@ -4,6 +4,8 @@
 use std::ops::RangeInclusive;
 
 use egui::{Context, DragValue, Id, Slider};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use crate::language::typed_in;
 
@@ -60,17 +62,17 @@ impl Typed {
     }
 
     /// The number that a text stands for; nothing where it says what stands there already.
-    fn read(&self, text: &str) -> Result<Option<f64>, String> {
+    fn read(&self, text: &str) -> Result<Option<f64>, Message> {
         let text = text.trim();
         if text.is_empty() {
             return Ok(None);
         }
         let Some(number) = typed_in(&self.unit)(text) else {
             let wanted = match self.unit.as_str() {
-                "" | "1" => "enter a number without a unit".to_owned(),
-                unit => format!("enter a number in {unit}"),
+                "" | "1" => "enter a number without a unit".into(),
+                unit => msg!("enter a number in {}", Message::name(unit)),
             };
-            return Err(format!("{text} is not accepted: {wanted}."));
+            return Err(msg!("{} is not accepted: {}.", Message::name(text), wanted));
         };
         // A value from elsewhere may have more decimals than are shown, and lie beyond the range.
         if number == egui::emath::round_to_decimals(self.present, self.decimals) {
@@ -81,8 +83,11 @@ impl Typed {
         }
         let [from, to] = [self.range.start(), self.range.end()]
             .map(|end| egui::emath::round_to_decimals(*end, 9));
-        let limits = format!("the range is {from} to {to} {}", self.unit);
-        Err(format!("{text} is not accepted: {}.", limits.trim_end()))
+        let limits = match self.unit.as_str() {
+            "" => msg!("the range is {} to {}", from, to),
+            unit => msg!("the range is {} to {}", from, format!("{to} {unit}")),
+        };
+        Err(msg!("{} is not accepted: {}.", Message::name(text), limits))
     }
 }
 
@@ -92,7 +97,7 @@ fn place() -> Id {
 }
 
 /// What was refused since it was last asked for, in one sentence.
-pub fn refused(ctx: &Context) -> Option<String> {
+pub fn refused(ctx: &Context) -> Option<Message> {
     ctx.data_mut(|data| data.remove_temp(place()))
 }
 

@@ -8,6 +8,8 @@
 //! `true`, `false`, `null`, a list of numbers `1,3,3,1`, a word, or else JSON; characters that an address
 //! does not take stand as `%XX`. What a reader does not know is refused, never guessed.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
@@ -29,11 +31,12 @@ pub fn write(page: &str, settings: &Value, defaults: &Value) -> String {
 ///
 /// # Errors
 /// One sentence that says what cannot be read.
-pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), String> {
+pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), Message> {
     if text.len() > LONGEST {
-        return Err(format!(
-            "This link is too long: {} characters where {LONGEST} are the most.",
-            text.len()
+        return Err(msg!(
+            "This link is too long: {} characters where {} are the most.",
+            text.len(),
+            LONGEST
         ));
     }
     let text = text.trim();
@@ -42,14 +45,16 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), String> {
     match parts.next() {
         Some(VERSION) => {}
         Some(other) if other.starts_with('v') && other.len() < 6 => {
-            return Err(format!(
-                "This link is of version {}; this Hysteron reads {VERSION}.",
-                shortened(other)
+            return Err(msg!(
+                "This link is of version {}; this Hysteron reads {}.",
+                Message::name(shortened(other)),
+                VERSION
             ));
         }
         _ => {
-            return Err(format!(
-                "This is no link to Hysteron: it should begin with #{VERSION};."
+            return Err(msg!(
+                "This is no link to Hysteron: it should begin with #{};.",
+                VERSION
             ));
         }
     }
@@ -57,22 +62,26 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), String> {
     let mut settings = defaults.clone();
     for part in parts.filter(|p| !p.is_empty()) {
         let Some((path, value)) = part.split_once('=') else {
-            return Err(format!(
+            return Err(msg!(
                 "This link has a setting without a value: {}.",
-                shortened(part)
+                Message::name(shortened(part))
             ));
         };
         let place = path
             .split('.')
             .try_fold(&mut settings, |at, key| at.as_object_mut()?.get_mut(key));
         let Some(place) = place else {
-            return Err(format!(
+            return Err(msg!(
                 "This link sets what Hysteron does not know: {}.",
-                shortened(path)
+                Message::name(shortened(path))
             ));
         };
-        *place = decode(value)
-            .ok_or_else(|| format!("This link has a bad value: {}.", shortened(part)))?;
+        *place = decode(value).ok_or_else(|| {
+            msg!(
+                "This link has a bad value: {}.",
+                Message::name(shortened(part))
+            )
+        })?;
     }
     Ok((page, settings))
 }
@@ -81,9 +90,12 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), String> {
 ///
 /// # Errors
 /// One sentence that names the one that has not, as it stands in a link.
-pub fn check_shape(settings: &Value, usual: &Value) -> Result<(), String> {
+pub fn check_shape(settings: &Value, usual: &Value) -> Result<(), Message> {
     match misfit("", settings, usual) {
-        Some(part) => Err(format!("This link has a bad value: {}.", shortened(&part))),
+        Some(part) => Err(msg!(
+            "This link has a bad value: {}.",
+            Message::name(shortened(&part))
+        )),
         None => Ok(()),
     }
 }
@@ -269,13 +281,16 @@ pub fn object(parts: impl IntoIterator<Item = (String, Value)>) -> Value {
 ///
 /// # Errors
 /// One sentence.
-pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, String> {
+pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, Message> {
     // What serde says is about Rust, and in English.
-    T::deserialize(value).map_err(|_| "These settings cannot be read.".to_owned())
+    T::deserialize(value).map_err(|_| "These settings cannot be read.".into())
 }
 
 /// Why a link cannot show what is about a file of the user's.
-pub fn not_enclosed(name: &str) -> String {
+pub fn not_enclosed(name: &str) -> Message {
     let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
-    format!("This link is about the file {name}, which is not part of it: open that file here.")
+    msg!(
+        "This link is about the file {}, which is not part of it: open that file here.",
+        Message::name(name)
+    )
 }

@@ -2,6 +2,7 @@
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::hunting::{self, HuntingData};
+use hysteron_core::message::Message;
 use hysteron_core::on_off::{self, OnOffData, OnOffInput};
 use hysteron_core::scenario::{AnyScenario, keys_of_run};
 
@@ -10,13 +11,13 @@ use crate::work::{Say, Work};
 
 impl Work for OnOffTask {
     fn run(self, say: Say<'_, OnOffData>) {
-        tell(on_off::view(&self.0).map_err(|e| e.to_string()), say);
+        tell(on_off::view(&self.0).map_err(Message::from), say);
     }
 }
 
 impl Work for ServoTask {
     fn run(self, say: Say<'_, HuntingData>) {
-        tell(hunting::view(&self.0).map_err(|e| e.to_string()), say);
+        tell(hunting::view(&self.0).map_err(Message::from), say);
     }
 }
 
@@ -26,7 +27,7 @@ impl Work for ScenarioTask {
     }
 }
 
-fn read(text: &str) -> Result<ReadScenario, String> {
+fn read(text: &str) -> Result<ReadScenario, Message> {
     let report = report(text)?;
     let shown: &[&str] = match &report {
         ScenarioReport::Loop(_) => &["noise"],
@@ -40,19 +41,19 @@ fn read(text: &str) -> Result<ReadScenario, String> {
     Ok(ReadScenario { report, left_out })
 }
 
-fn report(text: &str) -> Result<ScenarioReport, String> {
-    match AnyScenario::from_toml(text).map_err(|e| e.to_string())? {
+fn report(text: &str) -> Result<ScenarioReport, Message> {
+    match AnyScenario::from_toml(text).map_err(Message::from)? {
         AnyScenario::Loop(scenario) => {
             let input = ExploreInput {
                 plant: scenario.plant,
                 relay: scenario.relay,
                 noise: scenario.options.noise,
             };
-            input.validate().map_err(|e| e.to_string())?;
+            input.validate().map_err(Message::from)?;
             Ok(ScenarioReport::Loop(Box::new(input)))
         }
         AnyScenario::OnOff(scenario) => {
-            let input = OnOffInput::of(&scenario.on_off).map_err(|e| e.to_string())?;
+            let input = OnOffInput::of(&scenario.on_off).map_err(Message::from)?;
             Ok(ScenarioReport::OnOff(Box::new(input)))
         }
         AnyScenario::Servo(scenario) => Ok(ScenarioReport::Servo(Box::new(scenario.servo))),
@@ -61,7 +62,7 @@ fn report(text: &str) -> Result<ScenarioReport, String> {
 }
 
 /// Hands over what a computation came to.
-fn tell<R>(result: Result<R, String>, say: Say<'_, R>) {
+fn tell<R>(result: Result<R, Message>, say: Say<'_, R>) {
     say(match result {
         Ok(report) => News::Report(Box::new(report)),
         Err(error) => News::Failed(error),

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use hysteron_core::message::Message;
 use hysteron_core::tuning::measured::{
     FittedModel, MeasuredTuning, OpenError, Record, alone, open, steps, tune_readings,
 };
@@ -30,7 +31,7 @@ impl Work for MeasuredTask {
 }
 
 impl MeasuredTask {
-    fn report(self) -> Result<ReadTest, String> {
+    fn report(self) -> Result<ReadTest, Message> {
         let wishes = self.wishes;
         let (tuning, record) = match self.test {
             MeasuredTest::File(task) => {
@@ -41,16 +42,16 @@ impl MeasuredTask {
                     Err(OpenError::Import(error)) => {
                         return unclear(&task.file, &bytes, &error)
                             .map(ReadTest::Unclear)
-                            .ok_or_else(|| error.to_string());
+                            .ok_or_else(|| error.into());
                     }
-                    Err(error) => return Err(error.to_string()),
+                    Err(error) => return Err(error.into()),
                 };
                 let record = opened.record().map(drawn);
-                (opened.tune(&wishes).map_err(|e| e.to_string())?, record)
+                (opened.tune(&wishes).map_err(Message::from)?, record)
             }
             MeasuredTest::Readings(readings) => {
                 let settings = wishes.settings(Vec::new());
-                let tuning = tune_readings(&readings, &settings).map_err(|e| e.to_string())?;
+                let tuning = tune_readings(&readings, &settings).map_err(Message::from)?;
                 (tuning, None)
             }
         };

@@ -2,6 +2,7 @@
 //! it can be kept, and read again elsewhere.
 
 use hysteron_core::measurement::{ImportOptions, Kind, Mapping, MappingError, PeriodError};
+use hysteron_core::message::Message;
 use serde::{Deserialize, Serialize};
 
 /// What a file does not say; nothing where it says everything.
@@ -23,18 +24,18 @@ impl Reading {
     ///
     /// # Errors
     /// One sentence.
-    pub fn options(&self) -> Result<ImportOptions, String> {
+    pub fn options(&self) -> Result<ImportOptions, Message> {
         let mapping = match self.map.as_str() {
             "" => Mapping::default(),
-            map => map.parse::<Mapping>().map_err(|e| e.to_string())?,
+            map => map.parse::<Mapping>().map_err(Message::from)?,
         };
         let torque_constant = match self.torque_constant.as_str() {
             "" => None,
-            constant => Some(constant.parse().map_err(|e: MappingError| e.to_string())?),
+            constant => Some(constant.parse().map_err(|e: MappingError| e.message())?),
         };
         let period = match self.period.as_str() {
             "" => None,
-            period => Some(period.parse().map_err(|e: PeriodError| e.to_string())?),
+            period => Some(period.parse().map_err(|e: PeriodError| e.message())?),
         };
         Ok(ImportOptions {
             kind: self.kind,
@@ -87,6 +88,10 @@ mod tests {
             map: "t".to_owned(),
             ..nothing
         };
-        assert!(wrong.options().is_err_and(|e| e.contains("not a mapping")));
+        assert!(
+            wrong
+                .options()
+                .is_err_and(|e| e.to_string().contains("not a mapping"))
+        );
     }
 }

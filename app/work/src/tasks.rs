@@ -10,6 +10,7 @@ use hysteron_core::explore::ExploreInput;
 use hysteron_core::hunting::{HuntingData, Servo};
 use hysteron_core::maps::{MapInput, Tile};
 use hysteron_core::measurement::{FoundColumn, Measurement};
+use hysteron_core::message::Message;
 use hysteron_core::mystery::{Answer, Mystery, Request, Reveal};
 use hysteron_core::on_off::{OnOffData, OnOffInput};
 use hysteron_core::tuning::measured::{MeasuredTuning, Readings, Record, Wishes};
@@ -26,11 +27,11 @@ use crate::reading::Reading;
 #[serde(tag = "type", content = "value", rename_all = "lowercase")]
 pub enum News<R = StepReport> {
     /// Share done, 0 to 1, and what it is doing.
-    Progress(f64, String),
+    Progress(f64, Message),
     /// The result; a task may hand it over in parts.
     Report(Box<R>),
     /// Why there is none.
-    Failed(String),
+    Failed(Message),
 }
 
 /// A long computation.
@@ -65,7 +66,7 @@ pub enum ReadReport {
 #[derive(Serialize, Deserialize)]
 pub struct Unclear {
     /// What is not understood.
-    pub reason: String,
+    pub reason: Message,
     /// What there is.
     pub columns: Vec<FoundColumn>,
 }
@@ -292,7 +293,7 @@ pub struct GapReport {
     /// What was read, where a file was.
     pub measurement: Option<Measurement>,
     /// The estimate, or why there can be none.
-    pub estimate: Result<GapEstimate, String>,
+    pub estimate: Result<GapEstimate, Message>,
 }
 
 impl Task for GapTask {

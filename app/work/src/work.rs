@@ -1,7 +1,6 @@
 //! What long computations do. The same code runs on a thread natively and in a worker on the web.
 
 use std::borrow::Cow;
-use std::fmt;
 
 use hysteron_core::backlash::estimate_gap;
 use hysteron_core::by_hand::{ByHand, HandReplay};
@@ -11,6 +10,8 @@ use hysteron_core::diagnosis::{Discovery, NextExperiment, StepReport};
 use hysteron_core::drive::{Recorder, record};
 use hysteron_core::maps::{MapJob, Tile};
 use hysteron_core::measurement::{ImportError, Measurement, Problem, columns, import};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::mystery::{Reveal, make, seal_of};
 use hysteron_core::progress::Progress;
 use hysteron_core::report::sha256;
@@ -53,7 +54,7 @@ impl Work for ReadTask {
         };
         say(match report {
             Ok(report) => News::Report(Box::new(report)),
-            Err(refused) => News::Failed(refused.to_string()),
+            Err(refused) => News::Failed(refused.message()),
         });
     }
 }
@@ -78,14 +79,12 @@ pub(crate) fn unclear(file: &str, bytes: &[u8], error: &ImportError) -> Option<U
     let columns = columns(file, bytes).ok()?;
     let reason = match error.problem {
         // What the command line says goes on about options.
-        Problem::NotMapped { .. } => {
-            "A file of MATLAB does not say what its columns are.".to_owned()
-        }
+        Problem::NotMapped { .. } => "A file of MATLAB does not say what its columns are.".into(),
         _ => ImportError {
             advice: None,
             ..error.clone()
         }
-        .to_string(),
+        .message(),
     };
     (columns.len() >= FEWEST).then_some(Unclear { reason, columns })
 }
@@ -93,7 +92,7 @@ pub(crate) fn unclear(file: &str, bytes: &[u8], error: &ImportError) -> Option<U
 /// Why a file is not read.
 enum Refused {
     /// How it was to be read makes no sense.
-    Reading(String),
+    Reading(Message),
     File(ImportError),
 }
 
@@ -107,11 +106,11 @@ impl Refused {
     }
 }
 
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Refused {
+    fn message(&self) -> Message {
         match self {
-            Self::Reading(error) => error.fmt(f),
-            Self::File(error) => error.fmt(f),
+            Self::Reading(error) => error.clone(),
+            Self::File(error) => error.message(),
         }
     }
 }
@@ -129,14 +128,15 @@ impl ReadTask {
     }
 
     /// A measurement of which a gap is to be estimated.
-    fn measured(&self) -> Result<Measurement, String> {
+    fn measured(&self) -> Result<Measurement, Message> {
         self.read(&bytes_of(&self.content)).map_err(|refused| {
             if refused.about_columns().is_some() {
-                format!(
-                    "{refused}. Open it in Compare, which asks for its columns; then it can be opened here too."
+                msg!(
+                    "{}. Open it in Compare, which asks for its columns; then it can be opened here too.",
+                    refused.message()
                 )
             } else {
-                refused.to_string()
+                refused.message()
             }
         })
     }
@@ -152,7 +152,7 @@ impl Work for StepTask {
         if let Some(report) = finish(|| job.advance(), say) {
             let wrong = report.step.checked().err();
             say(match wrong {
-                Some(error) => News::Failed(error.to_string()),
+                Some(error) => News::Failed(error.into()),
                 None => News::Report(Box::new(report)),
             });
         }
@@ -178,7 +178,7 @@ impl Work for HandTask {
         let hand = ByHand::new(&self.measurement, &self.report, all);
         say(match hand {
             Some(hand) => News::Report(Box::new(hand.settled(&self.values))),
-            None => News::Failed("The values of this model cannot be set by hand.".to_owned()),
+            None => News::Failed("The values of this model cannot be set by hand.".into()),
         });
     }
 }
@@ -199,7 +199,7 @@ impl Work for ExperimentTask {
         };
         match finish(|| job.advance(), say) {
             Some(Some(found)) => say(News::Report(Box::new(found))),
-            Some(None) => say(News::Failed(NO_ROOM.to_owned())),
+            Some(None) => say(News::Failed(NO_ROOM.into())),
             None => false,
         };
     }
@@ -210,9 +210,8 @@ const NO_ROOM: &str =
     "These limits leave no room for an experiment: allow a longer record or more motion.";
 
 /// A job; where there is none, why is said.
-fn begun<J, E: fmt::Display, R>(job: Result<J, E>, say: Say<'_, R>) -> Option<J> {
-    job.map_err(|error| say(News::Failed(error.to_string())))
-        .ok()
+fn begun<J, E: Into<Message>, R>(job: Result<J, E>, say: Say<'_, R>) -> Option<J> {
+    job.map_err(|error| say(News::Failed(error.into()))).ok()
 }
 
 /// Advances a job to its end; `None` where nobody listens any more.
@@ -247,7 +246,7 @@ impl Work for TuneTask {
     fn run(self, say: Say<'_, TuningReport>) {
         say(match tune(&self.0) {
             Ok(report) => News::Report(Box::new(report)),
-            Err(error) => News::Failed(error.to_string()),
+            Err(error) => News::Failed(error.into()),
         });
     }
 }
@@ -256,14 +255,14 @@ impl Work for GapTask {
     fn run(self, say: Say<'_, GapReport>) {
         let (read, keep) = match self {
             Self::Simulated(input) => (
-                record(&input, &Recorder::default()).map_err(|e| e.to_string()),
+                record(&input, &Recorder::default()).map_err(Message::from),
                 false,
             ),
             Self::Measured(task) => (task.measured(), true),
         };
         say(match read {
             Ok(measurement) => News::Report(Box::new(GapReport {
-                estimate: estimate_gap(&measurement).map_err(|e| e.to_string()),
+                estimate: estimate_gap(&measurement).map_err(Message::from),
                 measurement: keep.then_some(measurement),
             })),
             Err(error) => News::Failed(error),
@@ -278,7 +277,7 @@ impl Work for MysteryTask {
                 link: mystery.link(),
                 mystery,
             })),
-            Err(error) => News::Failed(error.to_string()),
+            Err(error) => News::Failed(error.into()),
         });
     }
 }
@@ -287,7 +286,7 @@ impl Work for RevealTask {
     fn run(self, say: Say<'_, Reveal>) {
         say(match Reveal::open(&self.seal, &self.word, &self.answer) {
             Ok(reveal) => News::Report(Box::new(reveal)),
-            Err(error) => News::Failed(error.to_string()),
+            Err(error) => News::Failed(error.into()),
         });
     }
 }

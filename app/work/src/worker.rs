@@ -1,5 +1,6 @@
 //! The page's worker: it computes off the page's main thread, in the page's module, which is there already.
 
+use hysteron_core::message::Message;
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
@@ -23,7 +24,7 @@ pub fn listen() {
             return;
         };
         if let Err(error) = work(&answer, &message) {
-            send(&answer, &News::<()>::Failed(error));
+            send(&answer, &News::<()>::Failed(Message::name(error)));
         }
         ready(&answer);
     });

@@ -1,6 +1,7 @@
 //! The gap from the motor's columns.
 
 use crate::measurement::Measurement;
+use crate::message::Message;
 use crate::model::{SeenContact, SeenLoad, Sharpness, Turn};
 use crate::order::{drop_marked, median, quantile, range};
 
@@ -190,7 +191,7 @@ fn nothing(record: &Record, quality: Quality) -> GapEstimate {
         load: None,
         travel: 0.0,
         quality,
-        text: String::new(),
+        text: Message::default(),
     };
     estimate.text = verdict::text(&estimate, false);
     estimate

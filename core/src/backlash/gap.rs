@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, says};
+
 /// An end of the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -124,7 +126,7 @@ pub struct GapEstimate {
     /// The verdict in a word.
     pub quality: Quality,
     /// The verdict in a sentence.
-    pub text: String,
+    pub text: Message,
 }
 
 /// Length below which it reads better in thousandths of its unit.
@@ -146,17 +148,37 @@ impl GapEstimate {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum GapError {
     /// A process has no gap.
-    #[error("a process has no gap; expected a drive with columns u [N m] or u [N] and x1 or v1")]
     NotADrive,
     /// Nothing of the motor's motion was recorded.
-    #[error("no motor column; expected x1 (position) and/or v1 (velocity)")]
     NoMotorColumn,
     /// Values that no checked measurement has.
-    #[error("the columns differ in length, are not finite, or time does not increase")]
     Damaged,
     /// Samples so uneven that most of an even grid would be invented.
-    #[error(
-        "the samples are too uneven in time; expected an even sampling time without long pauses"
-    )]
     UnevenTime,
 }
+
+impl GapError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::NotADrive => {
+                "a process has no gap; expected a drive with columns u [N m] or u [N] and x1 or v1"
+                    .into()
+            }
+            Self::NoMotorColumn => {
+                "no motor column; expected x1 (position) and/or v1 (velocity)"
+                    .into()
+            }
+            Self::Damaged => {
+                "the columns differ in length, are not finite, or time does not increase"
+                    .into()
+            }
+            Self::UnevenTime => {
+                "the samples are too uneven in time; expected an even sampling time without long pauses"
+                    .into()
+            }
+        }
+    }
+}
+
+says!(GapError);

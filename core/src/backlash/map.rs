@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::{Measurement, Quantity};
+use crate::message::{Message, says};
+use crate::msg;
 use crate::order::{median, range};
 
 use super::free_motor::NORMAL_MEDIAN;
@@ -88,12 +90,29 @@ pub enum MapSilence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum MapError {
     /// A column is missing.
-    #[error("no column {0}; the map needs the positions x1 of the motor and x2 of the load")]
     NoColumn(&'static str),
     /// Too little to see a branch.
-    #[error("{0} samples are too few for a map; expected at least {FEWEST}")]
     TooShort(usize),
 }
+
+impl MapError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::NoColumn(given) => msg!(
+                "no column {}; the map needs the positions x1 of the motor and x2 of the load",
+                given
+            ),
+            Self::TooShort(given) => msg!(
+                "{} samples are too few for a map; expected at least {}",
+                given,
+                FEWEST
+            ),
+        }
+    }
+}
+
+says!(MapError);
 
 /// The map of a record with `x1` and `x2` (Fig. 7 of the paper): the gap as a reference, and how unlike the branches
 /// are.

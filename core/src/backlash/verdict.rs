@@ -2,6 +2,8 @@
 
 use super::cycles::ENOUGH_SAMPLES;
 use super::gap::{GapEstimate, Quality};
+use crate::message::{Message, fixed};
+use crate::msg;
 
 /// Traverses up to which all of them are spoken for; of more, nine in ten.
 const FEW: usize = 10;
@@ -10,7 +12,7 @@ const FEW: usize = 10;
 const AGREES: f64 = 0.1;
 
 /// One or two sentences about `estimate`; `flips`: whether the asymmetry of the relay changed its sign.
-pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
+pub(super) fn text(estimate: &GapEstimate, flips: bool) -> Message {
     let (scale, unit) = estimate.written_in();
     let travel = number(estimate.travel * scale);
     match estimate.quality {
@@ -18,50 +20,59 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> String {
         Quality::NoDriftingTest => {
             "no drifting test: expected a limit cycle under a velocity relay whose asymmetry \
             changes its sign every few seconds"
-                .to_owned()
+                .into()
         }
-        Quality::NoEngagement if !flips => format!(
-            "no engagement seen: the motor met no load on its {travel} {unit} of travel, and the asymmetry of the \
-             relay never changed its sign, so that this is no drifting test either"
+        Quality::NoEngagement if !flips => msg!(
+            "no engagement seen: the motor met no load on its {} {} of travel, and the asymmetry of the relay never \
+             changed its sign, so that this is no drifting test either",
+            travel,
+            unit
         ),
         Quality::NoEngagement => {
-            format!(
-                "no engagement seen: the gap may be wider than the travel of {travel} {unit}, or there is no load"
-            )
+            msg!("no engagement seen: the gap may be wider than the travel of {} {}, or there is no load", travel, unit)
         }
         Quality::Disturbed => "no engagement seen: the motor is disturbed, but not by contacts with a load, since the \
             force acts all through the cycle (cogging, changing friction and a shaft that yields do so)"
-            .to_owned(),
-        Quality::OneSide => format!(
-            "the load was met at one side only ({} contacts); the gap may be wider than the travel of {travel} {unit}",
-            estimate.contacts.len()
+            .into(),
+        Quality::OneSide => msg!(
+            "the load was met at one side only ({} contacts); the gap may be wider than the travel of {} {}",
+            estimate.contacts.len(),
+            travel,
+            unit
         ),
-        Quality::Undecided => format!(
+        Quality::Undecided => msg!(
             "the load was met on both sides ({} contacts), but it moved so much in between that the gap remains open",
             estimate.contacts.len()
         ),
-        Quality::AssumedCentre => format!(
+        Quality::AssumedCentre => msg!(
             "the gap is {}, if the motor stood in its middle at the start: the load was met at one side only ({} \
-             contacts), and the travel from the start to the first contact counts as half a gap; no traverse confirms \
-             it",
+             contacts), and the travel from the start to the first contact counts as half a gap; no traverse \
+             confirms it",
             value(estimate),
             estimate.contacts.len()
         ),
         Quality::Good | Quality::Fair | Quality::Poor => {
-            format!("the gap is {}: {}", value(estimate), agreement(estimate))
+            msg!("the gap is {}: {}", value(estimate), agreement(estimate))
         }
     }
 }
 
 /// The same where the input turns round every so many samples, if that is known.
-pub(super) fn too_few_samples(per_cycle: Option<f64>) -> String {
-    let known = per_cycle.map_or_else(String::new, |n| {
-        format!(": a cycle of the relay has {n:.1}")
-    });
-    format!(
-        "too few samples to see contacts within a cycle{known}, and {ENOUGH_SAMPLES:.0} are needed; sample faster, or \
-         make the cycle longer by more hysteresis or less torque"
-    )
+pub(super) fn too_few_samples(per_cycle: Option<f64>) -> Message {
+    let needed = fixed(ENOUGH_SAMPLES, 0);
+    match per_cycle {
+        Some(n) => msg!(
+            "too few samples to see contacts within a cycle: a cycle of the relay has {}, and {} are needed; sample \
+             faster, or make the cycle longer by more hysteresis or less torque",
+            fixed(n, 1),
+            needed
+        ),
+        None => msg!(
+            "too few samples to see contacts within a cycle, and {} are needed; sample faster, or \
+         make the cycle longer by more hysteresis or less torque",
+            needed
+        ),
+    }
 }
 
 /// The gap with its standard error.
@@ -78,7 +89,7 @@ fn value(estimate: &GapEstimate) -> String {
 }
 
 /// How well the traverses agree: all of a few, nine in ten of many, else those that do and how far the others are off.
-fn agreement(estimate: &GapEstimate) -> String {
+fn agreement(estimate: &GapEstimate) -> Message {
     let gap = estimate.gap.unwrap_or(1.0);
     let mut off: Vec<f64> = estimate
         .traverses
@@ -97,23 +108,24 @@ fn agreement(estimate: &GapEstimate) -> String {
     let agree = off.iter().filter(|o| **o <= AGREES).count();
     let last = off.last().copied().unwrap_or(0.0);
     match off.len() {
-        0 => "by the travel between contacts at both sides".to_owned(),
-        1 => "one traverse; a longer test would check it".to_owned(),
+        0 => "by the travel between contacts at both sides".into(),
+        1 => "one traverse; a longer test would check it".into(),
         n if n == agree && n <= FEW => {
-            format!("{} traverses agree within {}", word(n), percent(last))
+            msg!("{} traverses agree within {}", word(n), percent(last))
         }
-        n if n > FEW && off[n * 9 / 10] <= AGREES => format!(
-            "nine in ten of {n} traverses agree within {}",
+        n if n > FEW && off[n * 9 / 10] <= AGREES => msg!(
+            "nine in ten of {} traverses agree within {}",
+            n,
             percent(off[n * 9 / 10])
         ),
-        n if 2 * agree > n => format!(
+        n if 2 * agree > n => msg!(
             "{} of {} traverses agree within {}, the others are off by up to {}",
             word(agree),
             word(n),
             percent(off[agree - 1]),
             percent(last)
         ),
-        n => format!(
+        n => msg!(
             "{} traverses scatter about it by up to {}",
             word(n),
             percent(last)
@@ -121,13 +133,11 @@ fn agreement(estimate: &GapEstimate) -> String {
     }
 }
 
-fn word(n: usize) -> String {
+fn word(n: usize) -> Message {
     const WORDS: [&str; 11] = [
         "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
     ];
-    WORDS
-        .get(n)
-        .map_or_else(|| n.to_string(), |w| (*w).to_owned())
+    WORDS.get(n).map_or_else(|| n.into(), Into::into)
 }
 
 /// Three significant digits.

@@ -3,6 +3,8 @@
 use super::data::Data;
 use super::motion::Motion;
 use crate::measurement::Kind;
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::order::median;
 
 /// Most levels of an input that counts as a relay's.
@@ -32,7 +34,7 @@ pub(super) struct Axis {
     /// Has few values, each of which is a part of its own.
     discrete: bool,
     /// The place between two values in words, given the unit.
-    say: fn(f64, f64, &str) -> String,
+    say: fn(f64, f64, &str) -> Message,
 }
 
 /// The samples that have a value, in the order of their values, and where the parts of the axis begin and end in it.
@@ -71,7 +73,7 @@ impl Axis {
     }
 
     /// The place between two values in words.
-    pub fn place(&self, from: f64, to: f64) -> String {
+    pub fn place(&self, from: f64, to: f64) -> Message {
         (self.say)(from, to, &self.unit)
     }
 }
@@ -93,15 +95,15 @@ impl Parts {
 pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axis> {
     let mut axes = vec![continuous("time", "s", data.time.clone(), |a, b, _| {
         let [from, to] = [a, b].map(|t| moment(t, b - a));
-        let from = if a == 0.0 { "0" } else { &from };
-        format!("between {from} and {to}")
+        let from = if a == 0.0 { "0".to_owned() } else { from };
+        msg!("between {} and {}", from, to)
     })];
     match data.kind {
         Kind::Drive => drive_axes(data, motion, velocity_unit, &mut axes),
         Kind::Process => {
             let values = motion.velocity.clone();
             axes.push(continuous("output", velocity_unit, values, |a, b, unit| {
-                format!("where the output is {}", within(a, b, unit))
+                msg!("where the output is {}", within(a, b, unit))
             }));
         }
     }
@@ -120,7 +122,11 @@ pub(super) fn axes(data: &Data, motion: &Motion, velocity_unit: &str) -> Vec<Axi
                 relay_phase(data),
                 |a, b, _| {
                     let (a, b) = (100.0 * a, 100.0 * b);
-                    format!("between {a:.0} % and {b:.0} % of the relay period")
+                    msg!(
+                        "between {} % and {} % of the relay period",
+                        fixed(a, 0),
+                        fixed(b, 0)
+                    )
                 },
             ));
         }
@@ -135,7 +141,7 @@ fn drive_axes(data: &Data, motion: &Motion, velocity_unit: &str, axes: &mut Vec<
         "velocity",
         velocity_unit,
         velocity.clone(),
-        |a, b, unit| format!("where the velocity is {}", within(a, b, unit)),
+        |a, b, unit| msg!("where the velocity is {}", within(a, b, unit)),
     ));
     let reversed = |i: usize| velocity[i] * velocity[i - 1] < 0.0;
     axes.push(continuous(
@@ -151,12 +157,12 @@ fn drive_axes(data: &Data, motion: &Motion, velocity_unit: &str, axes: &mut Vec<
             "1",
             acceleration_signs(data, motion),
             |a, b, _| {
-                let sign = match (a < 0.0, b > 0.0) {
-                    (true, true) => "not 0",
-                    (true, false) => "negative",
-                    _ => "positive",
-                };
-                format!("where the acceleration is {sign}")
+                match (a < 0.0, b > 0.0) {
+                    (true, true) => "where the acceleration is not 0",
+                    (true, false) => "where the acceleration is negative",
+                    _ => "where the acceleration is positive",
+                }
+                .into()
             },
         )
     });
@@ -171,11 +177,11 @@ fn drive_axes(data: &Data, motion: &Motion, velocity_unit: &str, axes: &mut Vec<
                 "turn_angle",
                 unit,
                 angle.collect(),
-                |a, b, unit| format!("where the angle within a turn is {}", within(a, b, unit)),
+                |a, b, unit| msg!("where the angle within a turn is {}", within(a, b, unit)),
             ));
         }
         axes.push(continuous("position", unit, position, |a, b, unit| {
-            format!("where the position is {}", within(a, b, unit))
+            msg!("where the position is {}", within(a, b, unit))
         }));
     }
     if !data.felt.is_empty() {
@@ -193,7 +199,7 @@ fn continuous(
     name: &'static str,
     unit: &str,
     values: Vec<f64>,
-    say: fn(f64, f64, &str) -> String,
+    say: fn(f64, f64, &str) -> Message,
 ) -> Axis {
     Axis {
         name,
@@ -309,7 +315,7 @@ fn levels(input: &[f64]) -> usize {
     seen.len()
 }
 
-fn within(from: f64, to: f64, unit: &str) -> String {
+fn within(from: f64, to: f64, unit: &str) -> Message {
     let unit = if unit == "1" {
         String::new()
     } else {
@@ -318,24 +324,24 @@ fn within(from: f64, to: f64, unit: &str) -> String {
     let size = from.abs().max(to.abs());
     if to - from <= SAME * size {
         let value = rounded(to, apart(size) + 1);
-        return format!("close to {value}{unit}");
+        return msg!("close to {}", value + &unit);
     }
     let digits = apart(to - from) + 1;
     let [from, to] = [from, to].map(|value| rounded(value, digits));
-    format!("between {from} and {to}{unit}")
+    msg!("between {} and {}", from, to + &unit)
 }
 
 /// Share of their size up to which two ends of a range say the same.
 const SAME: f64 = 1e-4;
 
-fn span_after(from: f64, to: f64, what: &str) -> String {
+fn span_after(from: f64, to: f64, what: &'static str) -> Message {
     if to <= 0.0 {
-        format!("in the first sample after {what}")
+        msg!("in the first sample after {}", what)
     } else if from <= 0.0 {
-        format!("within {} after {what}", seconds(to))
+        msg!("within {} after {}", seconds(to), what)
     } else {
         let [from, to] = [from, to].map(|t| moment(t, to - from));
-        format!("from {from} to {to} after {what}")
+        msg!("from {} to {} after {}", from, to, what)
     }
 }
 
@@ -385,7 +391,9 @@ mod tests {
     fn equal_values_are_in_one_part() {
         let mut values = vec![0.0; 50];
         values.extend((1..=50).map(f64::from));
-        let axis = continuous("output", "1", values, |_, _, _| String::new());
+        let axis = continuous("output", "1", values, |_, _, _| {
+            crate::message::Message::default()
+        });
         let parts = axis.parts(0..100, 10).unwrap();
         assert_eq!(parts.between(0, 1).len(), 50);
         assert_eq!(parts.len(), 6);

@@ -10,6 +10,7 @@ use crate::crew::Crew;
 use crate::diagnosis::{CriticismError, Diagnosis, Limits, StepReport};
 use crate::effect::EffectId;
 use crate::measurement::Measurement;
+use crate::message::Message;
 use crate::progress::Progress;
 use crate::user_model::UserModel;
 
@@ -63,9 +64,9 @@ impl Search {
         true
     }
 
-    fn progress(&self) -> (f64, String) {
+    fn progress(&self) -> (f64, Message) {
         match self.designs.as_ref().and_then(|d| d.first()) {
-            Some(design) => (design.progress(), TRYING.to_owned()),
+            Some(design) => (design.progress(), TRYING.into()),
             None => self.explain.progress(),
         }
     }
@@ -120,7 +121,7 @@ impl StepJob {
             Some(report) => Progress::Done(report),
             None => Progress::Running {
                 fraction: 1.0,
-                text: String::new(),
+                text: Message::default(),
             },
         }
     }
@@ -215,7 +216,7 @@ impl DiagnosisJob {
         }
         Progress::Running {
             fraction: 0.95,
-            text: "Done".to_owned(),
+            text: "Done".into(),
         }
     }
 

@@ -1,10 +1,9 @@
 //! What of a record was not used, in plain words.
 
-use std::fmt::Write as _;
-
 use super::data::Data;
 use super::locate::signal_name;
 use crate::diagnosis::Verdict;
+use crate::msg;
 
 /// Says which values and samples of the whole record were left out, and over which gaps no model runs.
 pub(super) fn add_left_out(verdict: &mut Verdict, whole: &Data) {
@@ -16,54 +15,44 @@ pub(super) fn add_left_out(verdict: &mut Verdict, whole: &Data) {
 
 /// Says how many values were left out.
 fn add_glitches(verdict: &mut Verdict, glitches: usize) {
-    let _ = match glitches {
+    let said = match glitches {
         0 => return,
-        1 => write!(
-            verdict.text,
-            " One value stood alone, far off its neighbours, and was left out: a glitch of the sensor."
-        ),
-        many => write!(
-            verdict.text,
-            " {many} values stood alone, far off their neighbours, and were left out: glitches of the sensor."
-        ),
+        1 => "One value stood alone, far off its neighbours, and was left out: a glitch of the sensor.".into(),
+        many => msg!(
+            "{} values stood alone, far off their neighbours, and were left out: glitches of the sensor.", many),
     };
+    verdict.text.add(said);
 }
 
 /// Says over how many gaps in the time the model does not run.
 fn add_pauses(verdict: &mut Verdict, pauses: usize) {
-    let _ = match pauses {
+    let said = match pauses {
         0 => return,
-        1 => write!(
-            verdict.text,
-            " Rows are missing in one place, or two runs are joined there: the model begins anew after it."
-        ),
-        many => write!(
-            verdict.text,
-            " Rows are missing in {many} places, or runs are joined there: the model begins anew after each."
-        ),
+        1 => "Rows are missing in one place, or two runs are joined there: the model begins anew after it.".into(),
+        many => msg!(
+            "Rows are missing in {} places, or runs are joined there: the model begins anew after each.", many),
     };
+    verdict.text.add(said);
 }
 
 /// Says of which outputs only the fresh readings were used.
 fn add_held(verdict: &mut Verdict, data: &Data) {
     for output in data.outputs.iter().filter(|o| o.is_held()) {
-        let _ = write!(
-            verdict.text,
-            " The {} stays as it is between {} readings: only these were used.",
+        verdict.text.add(msg!(
+            "The {} stays as it is between {} readings: only these were used.",
             signal_name(data.kind, output),
             output.telling(0, data.len())
-        );
+        ));
     }
 }
 
 /// Says which sensors were at their limit for a while.
 fn add_limited(verdict: &mut Verdict, data: &Data) {
     for output in data.outputs.iter().filter(|o| o.limited > 0) {
-        let _ = write!(
-            verdict.text,
-            " The {} stays at its largest values for {} samples: its sensor was at its limit, and they were left out.",
+        verdict.text.add(msg!(
+            "The {} stays at its largest values for {} samples: its sensor was at its limit, and they were left out.",
             signal_name(data.kind, output),
             output.limited
-        );
+        ));
     }
 }

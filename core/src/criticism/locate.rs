@@ -8,6 +8,8 @@ use super::output::Output;
 use super::spectrum::Spectrum;
 use crate::diagnosis::Finding;
 use crate::measurement::Kind;
+use crate::message::fixed;
+use crate::msg;
 
 /// Parts of equal sample count into which an axis is divided.
 const BINS: usize = 20;
@@ -114,11 +116,11 @@ fn concentration(
         to: high,
         share_of_error,
         share_of_samples,
-        text: format!(
-            "{:.0} % of the {} comes from {:.0} % of the samples, those {}.",
-            100.0 * share_of_error,
+        text: msg!(
+            "{} % of the {} comes from {} % of the samples, those {}.",
+            fixed(100.0 * share_of_error, 0),
             error_name(data.kind, output),
-            100.0 * share_of_samples,
+            fixed(100.0 * share_of_samples, 0),
             axis.place(low, high)
         ),
         spans: spans(data, axis, low, high),
@@ -138,9 +140,9 @@ fn band(data: &Data, output: &Output, residual: &[f64]) -> Option<Ranked> {
         to: band.to,
         share_of_error: band.error,
         share_of_samples: band.width,
-        text: format!(
-            "{:.0} % of the {} lies {}, which is {} % of the frequencies and has {} % of the power of the measured {}.",
-            100.0 * band.error,
+        text: msg!(
+            "{} % of the {} lies {}, which is {} % of the frequencies and has {} % of the power of the measured {}.",
+            fixed(100.0 * band.error, 0),
             error_name(data.kind, output),
             band.place(),
             small_percentage(band.width),
@@ -281,8 +283,9 @@ mod tests {
         assert!(
             finding
                 .text
+                .to_string()
                 .contains("those where the position is between -0.0")
-                && finding.text.ends_with(" rad."),
+                && finding.text.to_string().ends_with(" rad."),
             "{}",
             finding.text
         );
@@ -317,7 +320,7 @@ mod tests {
         assert_eq!((finding.from, finding.to), (-1.0, -1.0));
         assert!((finding.share_of_samples - 0.5).abs() < 0.01, "{finding:?}");
         assert!(
-            finding.text.contains(
+            finding.text.to_string().contains(
                 "comes from 50 % of the samples, those where the acceleration is negative."
             ),
             "{}",
@@ -346,14 +349,16 @@ mod tests {
         assert!(
             finding
                 .text
+                .to_string()
                 .contains("% of the velocity error lies between "),
             "{}",
             finding.text
         );
         assert!(
-            finding.text.contains(" Hz, which is ")
+            finding.text.to_string().contains(" Hz, which is ")
                 && finding
                     .text
+                    .to_string()
                     .ends_with("of the power of the measured velocity."),
             "{}",
             finding.text
@@ -393,7 +398,10 @@ mod tests {
         assert_eq!(finding.from, 0.0);
         assert!(finding.share_of_error > 0.95, "{finding:?}");
         assert!(
-            finding.text.ends_with(" after the motor felt the load."),
+            finding
+                .text
+                .to_string()
+                .ends_with(" after the motor felt the load."),
             "{}",
             finding.text
         );

@@ -1,12 +1,11 @@
 //! What is missing where no effect explains it: a force, an input or an error of an output, against velocity,
 //! position and time.
 
-use std::fmt::Write as _;
-
 use super::session::{Scored, Session};
 use crate::diagnosis::MissingPart;
 use crate::effect::{Dimension, Place, StepPart, Variable};
 use crate::measurement::Kind;
+use crate::message::{Message, fixed};
 use crate::uncertain::with_error;
 
 /// Estimates that explain less than this share of the squared error are not shown.
@@ -83,25 +82,24 @@ fn part(
         "input" => "A further input",
         _ => "An error of the sensor",
     };
-    let mut text = format!(
-        "{article} that depends on the {axis} alone would explain {:.0} % of what is left",
-        100.0 * explained
-    );
+    let share = fixed(100.0 * explained, 0);
     let strongest = parts
         .iter()
         .filter(|p| p.value.abs() > CLEAR * p.std_error)
         .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    let mut values = vec![Message::words(axis.to_owned()), share];
+    let mut words =
+        format!("{article} that depends on the {{}} alone would explain {{}} % of what is left");
     if let Some(p) = strongest {
-        let _ = write!(
-            text,
-            "; it is strongest from {:.3} to {:.3}{}, with {}",
-            p.from,
-            p.to,
-            shown(axis_unit),
-            with_error(p.value, p.std_error, unit)
-        );
+        words.push_str("; it is strongest from {} to {}, with {}");
+        let to = format!("{:.3}{}", p.to, shown(axis_unit));
+        values.extend([
+            fixed(p.from, 3),
+            to.into(),
+            with_error(p.value, p.std_error, unit),
+        ]);
     }
-    text.push('.');
+    let text = Message::Words((words + ".").into(), values);
     MissingPart {
         what: what.to_owned(),
         unit: unit.to_owned(),

@@ -11,6 +11,8 @@ use super::fit::residuals;
 use super::locate::signal_name;
 use super::motion::Motion;
 use crate::diagnosis::{ResidualTest, ResidualTestKind};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::sums::centred;
 
 /// Lags up to which a residual is compared with itself, and with the input, in samples.
@@ -61,22 +63,43 @@ pub(super) fn residual_tests(data: &Data, motion: &Motion) -> Vec<ResidualTest> 
         .collect()
 }
 
-fn sentence(kind: ResidualTestKind, name: &str, correlation: f64, lag: f64, bound: f64) -> String {
+fn sentence(
+    kind: ResidualTestKind,
+    name: &'static str,
+    correlation: f64,
+    lag: f64,
+    bound: f64,
+) -> Message {
     let lag = seconds(lag);
     let passed = correlation.abs() <= bound;
     let share = share(correlation);
     match (kind, passed) {
-        (ResidualTestKind::Whiteness, true) => format!(
-            "The residual of the {name} is white: no correlation beyond what chance leaves, {bound:.3}."
+        (ResidualTestKind::Whiteness, true) => msg!(
+            "The residual of the {} is white: no correlation beyond what chance leaves, {}.",
+            name,
+            fixed(bound, 3)
         ),
-        (ResidualTestKind::Whiteness, false) => format!(
-            "The residual of the {name} is not white: {lag} apart it correlates by {correlation:.3}, {share} of its square; chance leaves {bound:.3}."
+        (ResidualTestKind::Whiteness, false) => msg!(
+            "The residual of the {} is not white: {} apart it correlates by {}, {} of its square; chance leaves {}.",
+            name,
+            lag,
+            fixed(correlation, 3),
+            share,
+            fixed(bound, 3)
         ),
-        (ResidualTestKind::InputCorrelation, true) => format!(
-            "The residual of the {name} does not follow the input: no correlation beyond what chance leaves, {bound:.3}."
+        (ResidualTestKind::InputCorrelation, true) => msg!(
+            "The residual of the {} does not follow the input: no correlation beyond what chance leaves, {}.",
+            name,
+            fixed(bound, 3)
         ),
-        (ResidualTestKind::InputCorrelation, false) => format!(
-            "The residual of the {name} still follows the input: {lag} later it correlates by {correlation:.3}, {share} of its square; chance leaves {bound:.3}."
+        (ResidualTestKind::InputCorrelation, false) => msg!(
+            "The residual of the {} still follows the input: {} later it correlates by {}, {} of its square; chance \
+             leaves {}.",
+            name,
+            lag,
+            fixed(correlation, 3),
+            share,
+            fixed(bound, 3)
         ),
     }
 }
@@ -177,9 +200,17 @@ mod tests {
     #[test]
     fn a_correlation_that_fails_says_how_much_of_the_residual_it_is() {
         let text = |c| sentence(ResidualTestKind::Whiteness, "velocity", c, 4e-4, 0.035);
-        assert!(text(0.06).contains("by 0.060, 0.4 % of its square;"));
-        assert!(text(-0.709).contains("by -0.709, 50 % of its square;"));
-        assert!(text(0.03).contains(" is white"));
+        assert!(
+            text(0.06)
+                .to_string()
+                .contains("by 0.060, 0.4 % of its square;")
+        );
+        assert!(
+            text(-0.709)
+                .to_string()
+                .contains("by -0.709, 50 % of its square;")
+        );
+        assert!(text(0.03).to_string().contains(" is white"));
     }
 
     #[test]

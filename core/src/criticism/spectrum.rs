@@ -8,6 +8,8 @@
 
 use super::data::Data;
 use crate::diagnosis::ProfileBin;
+use crate::message::Message;
+use crate::msg;
 
 /// Bands from one period of the record to half the sampling rate, in equal ratios: some five in an octave.
 const BANDS: usize = 60;
@@ -61,11 +63,11 @@ impl Band {
     }
 
     /// Where it is, in words.
-    pub fn place(&self) -> String {
+    pub fn place(&self) -> Message {
         match (self.lowest, self.highest) {
-            (true, _) => format!("below {} Hz", hertz(self.to)),
-            (_, true) => format!("above {} Hz", hertz(self.from)),
-            _ => format!("between {} and {} Hz", hertz(self.from), hertz(self.to)),
+            (true, _) => msg!("below {} Hz", hertz(self.to)),
+            (_, true) => msg!("above {} Hz", hertz(self.from)),
+            _ => msg!("between {} and {} Hz", hertz(self.from), hertz(self.to)),
         }
     }
 }
@@ -364,7 +366,7 @@ mod tests {
         for (residual, word) in [(drift, "below "), (alternating, "above ")] {
             let spectrum = Spectrum::new(&time(n), &still, &residual, 0.0).unwrap();
             let place = spectrum.strongest().unwrap().place();
-            assert!(place.starts_with(word), "{place}");
+            assert!(place.to_string().starts_with(word), "{place}");
         }
     }
 

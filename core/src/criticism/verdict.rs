@@ -1,7 +1,5 @@
 //! What the data say in the end, in plain words.
 
-use std::fmt::Write as _;
-
 use super::dry_or_viscous::InsteadOfViscous;
 use super::score::Score;
 use super::select::is_plain_noise;
@@ -12,6 +10,8 @@ use crate::diagnosis::{
 };
 use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::uncertain::{in_unit, with_error};
 
 /// Effects that could stand in the place of one in the model.
@@ -20,9 +20,6 @@ pub(super) type Class = Vec<&'static dyn Effect>;
 /// Standard error, as a share of it, up to which an inertia, or the gain of a process, is told: its 95 % interval is
 /// half of it.
 const DETERMINED: f64 = 0.25;
-
-/// What a model leaves that explains all there is.
-const ALL_NOISE: &str = " is measurement noise.";
 
 /// The verdict on a final model: `wanted` are its effects, each with whether it only tells how the record was made,
 /// `classes` what could replace each.
@@ -47,18 +44,24 @@ pub(super) fn verdict(
     let of_machine = wanted.iter().enumerate().filter(|(_, w)| !w.1);
     let missing: Vec<Vec<EffectId>> = of_machine.map(class).collect();
     let ambiguous = missing.iter().any(|class| class.len() > 1);
-    let mut text = listed("A logging effect, not the machine", &of_record, parameters);
-    text.push_str(&listed("Missing", &missing, parameters));
+    let mut text = Message::default();
+    if !of_record.is_empty() {
+        let listed = listed(&of_record, parameters);
+        text.add(msg!("A logging effect, not the machine: {}.", listed));
+    }
+    if !missing.is_empty() {
+        text.add(msg!("Missing: {}.", listed(&missing, parameters)));
+    }
     let complete = rest != Rest::More;
     if !contradicted.is_empty() {
         return Verdict {
             complete,
-            ..contradiction(missing, contradicted, &text, model.score.error)
+            ..contradiction(missing, contradicted, text, model.score.error)
         };
     }
-    text.push_str(match (missing.is_empty(), complete) {
-        (true, true) => "Nothing is missing: what the model leaves",
-        (false, true) => "With that, what is left",
+    text.add(match (missing.is_empty(), complete) {
+        (true, true) => "Nothing is missing: what the model leaves is measurement noise.",
+        (false, true) => "With that, what is left is measurement noise.",
         (true, false) => {
             "The model leaves more than noise, but no effect in the library explains it."
         }
@@ -66,14 +69,11 @@ pub(super) fn verdict(
             "What is left is more than noise, but no further effect in the library explains it."
         }
     });
-    if complete {
-        text.push_str(ALL_NOISE);
-    }
     Verdict {
         missing,
         complete,
         unknown: !complete,
-        next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.to_owned()),
+        next_experiment: ambiguous.then(|| NEXT_EXPERIMENT.into()),
         part_of_the_way: Vec::new(),
         experiments: Vec::new(),
         contradicted,
@@ -82,42 +82,38 @@ pub(super) fn verdict(
     }
 }
 
-/// `Missing: Coulomb friction, friction level 0.0406 ± 0.0002 N m. `, or nothing where there is none.
-fn listed(what: &str, classes: &[Vec<EffectId>], parameters: &[Parameter]) -> String {
-    if classes.is_empty() {
-        return String::new();
-    }
-    let list: Vec<String> = classes.iter().map(|c| describe(c, parameters)).collect();
-    format!("{what}: {}. ", list.join("; "))
+/// `Coulomb friction, friction level 0.0406 ± 0.0002 N m; Dead zone`.
+fn listed(classes: &[Vec<EffectId>], parameters: &[Parameter]) -> Message {
+    Message::list("; ", classes.iter().map(|c| describe(c, parameters)))
 }
 
 /// The verdict where the data contradict what the user's model holds.
 fn contradiction(
     missing: Vec<Vec<EffectId>>,
     contradicted: Vec<Contradiction>,
-    listed: &str,
+    listed: Message,
     error: f64,
 ) -> Verdict {
-    let mut text = String::new();
+    let mut text = Message::default();
     for c in &contradicted {
-        let _ = write!(
-            text,
-            "The model holds {} = {}, but these data want {}. ",
-            c.name,
+        text.add(msg!(
+            "The model holds {} = {}, but these data want {}.",
+            Message::name(&c.name),
             in_unit(format!("{:.4e}", c.held), &c.unit),
             with_error(c.wanted, c.std_error, &c.unit)
-        );
+        ));
     }
-    text.push_str(listed);
+    text.add(listed);
     let released = contradicted.first().map_or(error, |c| c.error);
     if released < error {
-        let _ = write!(
-            text,
-            "With the known values released the error falls from {error:.2} to {released:.2} times the noise: correct \
-             or free them before looking for effects."
-        );
+        text.add(msg!(
+            "With the known values released the error falls from {} to {} times the noise: correct \
+             or free them before looking for effects.",
+            fixed(error, 2),
+            fixed(released, 2)
+        ));
     } else {
-        text.push_str("Correct or free what is known before looking for effects.");
+        text.add("Correct or free what is known before looking for effects.");
     }
     Verdict {
         missing,
@@ -140,14 +136,14 @@ pub(super) fn add_overruled(verdict: &mut Verdict, overruled: Vec<Overruled>) {
     };
     let new: Vec<&Overruled> = overruled.iter().filter(said).collect();
     if !new.is_empty() {
-        let first: Vec<String> = new.iter().map(|o| o.words()).collect();
-        let names: Vec<&str> = new.iter().map(|o| o.name.as_str()).collect();
-        verdict.text = format!(
-            "{} {} All this holds with another value than the one that was given: {}.",
-            first.join(" "),
-            verdict.text,
-            names.join(", ")
-        );
+        let names = Message::list(", ", new.iter().map(|o| Message::name(&o.name)));
+        let mut text = Message::list(" ", new.iter().map(|o| o.words()));
+        text.add(std::mem::take(&mut verdict.text));
+        text.add(msg!(
+            "All this holds with another value than the one that was given: {}.",
+            names
+        ));
+        verdict.text = text;
     }
     verdict.overruled = overruled;
 }
@@ -167,56 +163,69 @@ pub(super) fn add_rest(
     let error = score.error;
     let share = 100.0 * error / first;
     if rest == Rest::NoiseWithMemory {
-        let _ = write!(
-            verdict.text,
-            " This noise remembers for some samples, as that of a sensor with a filter does: it is {error:.2} times \
-             what neighbouring samples show, and depends neither on the motion nor on the input."
-        );
+        verdict.text.add(msg!(
+            "This noise remembers for some samples, as that of a sensor with a filter does: it is {} times what \
+             neighbouring samples show, and depends neither on the motion nor on the input.",
+            fixed(error, 2)
+        ));
         return;
     }
     if verdict.complete {
-        if let Some(before) = verdict.text.strip_suffix(ALL_NOISE) {
-            verdict.text = before.to_owned();
-        }
+        let nothing = verdict.missing.is_empty();
         if rest == Rest::RandomForces {
-            let _ = write!(
-                verdict.text,
-                " is noise, and what small random forces leave, such as those of a controller that is faster than the \
-                 record: {error:.2} times the noise. It goes on a random walk, and depends neither on the motion nor \
-                 on the input."
+            verdict.text.restate(if nothing {
+                msg!(
+                    "Nothing is missing: what the model leaves is noise, and what small random forces leave, such as \
+                     those of a controller that is faster than the record: {} times the noise.", fixed(error, 2))
+            } else {
+                msg!(
+                    "With that, what is left is noise, and what small random forces leave, such as those of a \
+                     controller that is faster than the record: {} times the noise.", fixed(error, 2))
+            });
+            verdict.text.add(
+                "It goes on a random walk, and depends neither on the motion nor on the input.",
             );
             return;
         }
-        let _ = write!(
-            verdict.text,
-            " is noise but for a trifle, or for short stretches: the error is {error:.2} times the noise, {share:.2} % \
-             of what it was at first."
-        );
+        verdict.text.restate(if nothing {
+            msg!(
+                "Nothing is missing: what the model leaves is noise but for a trifle, or for short stretches: the \
+                 error is {} times the noise, {} % of what it was at first.", fixed(error, 2), fixed(share, 2))
+        } else {
+            msg!(
+                "With that, what is left is noise but for a trifle, or for short stretches: the error is {} times \
+                 the noise, {} % of what it was at first.", fixed(error, 2), fixed(share, 2))
+        });
         return;
     }
-    let _ = write!(verdict.text, " The error is {error:.2} times the noise");
-    if !verdict.missing.is_empty() {
-        let digits = if share < 1.0 { 2 } else { 0 };
-        let _ = write!(verdict.text, ", {share:.digits$} % of what it was at first");
-    }
-    verdict.text.push('.');
+    let error = fixed(error, 2);
+    verdict.text.add(if verdict.missing.is_empty() {
+        msg!("The error is {} times the noise.", error)
+    } else {
+        let share = fixed(share, if share < 1.0 { 2 } else { 0 });
+        msg!(
+            "The error is {} times the noise, {} % of what it was at first.",
+            error,
+            share
+        )
+    });
     if let Some(strongest) = findings.first() {
-        let _ = write!(verdict.text, " {}", strongest.text);
+        verdict.text.add(&strongest.text);
     }
 }
 
 /// Says by what models were compared where the surroundings of a process wander.
 pub(super) fn add_wander(verdict: &mut Verdict) {
-    verdict.text.push_str(
-        " Most of what any model leaves wanders slowly, as if the surroundings changed: each model is judged by how \
+    verdict.text.add(
+        "Most of what any model leaves wanders slowly, as if the surroundings changed: each model is judged by how \
          well it foretells a sample from those before it.",
     );
 }
 
 /// Says what would tell apart what a drive that turns one way only leaves alike.
 pub(super) fn add_both_ways(verdict: &mut Verdict) {
-    verdict.text.push_str(" The drive turns one way only.");
-    verdict.next_experiment = Some(BOTH_WAYS.to_owned());
+    verdict.text.add("The drive turns one way only.");
+    verdict.next_experiment = Some(BOTH_WAYS.into());
 }
 
 /// Says that a process integrates, and how fast its output moves.
@@ -225,11 +234,10 @@ pub(super) fn add_integrating(verdict: &mut Verdict, parameters: &[Parameter]) {
         .iter()
         .find(|p| p.effect.is_none() && p.name == RATE);
     if let Some(rate) = rate {
-        let _ = write!(
-            verdict.text,
-            " The process integrates, so that its output stays where the input leaves it: K/T is {}.",
+        verdict.text.add(msg!(
+            "The process integrates, so that its output stays where the input leaves it: K/T is {}.",
             with_error(rate.value, rate.std_error, &rate.unit)
-        );
+        ));
     }
 }
 
@@ -244,61 +252,92 @@ pub(super) fn add_relay_loop(
     };
     match cycle_words(model) {
         Some([period, amplitude]) => {
-            let _ = write!(
-                verdict.text,
-                " Run free in its own relay loop, the model's period is off by {period} and its amplitude by {amplitude}"
-            );
-            if let Some(first) = first.filter(|_| !verdict.missing.is_empty()) {
-                let _ = match cycle_words(first) {
-                    Some([period, amplitude]) => write!(
-                        verdict.text,
-                        " (without what was found: {period} and {amplitude})"
-                    ),
-                    None => write!(verdict.text, " (without what was found there is no cycle)"),
-                };
-            }
-            verdict.text.push('.');
+            let first = first.filter(|_| !verdict.missing.is_empty());
+            verdict.text.add(match first.map(cycle_words) {
+                None => msg!(
+                    "Run free in its own relay loop, the model's period is off by {} % and its amplitude by {} %.",
+                    period,
+                    amplitude
+                ),
+                Some(Some([first, swing])) => msg!(
+                    "Run free in its own relay loop, the model's period is off by {} % and its amplitude by {} % \
+                     (without what was found: {} % and {} %).",
+                    period,
+                    amplitude,
+                    first,
+                    swing
+                ),
+                Some(None) => msg!(
+                    "Run free in its own relay loop, the model's period is off by {} % and its amplitude by {} % \
+                     (without what was found there is no cycle).",
+                    period,
+                    amplitude
+                ),
+            });
         }
         None => verdict
             .text
-            .push_str(" Run free in its own relay loop, the model comes to no cycle."),
+            .add("Run free in its own relay loop, the model comes to no cycle."),
     }
 }
 
 /// Errors of period and amplitude in per cent.
-fn cycle_words(error: LoopError) -> Option<[String; 2]> {
-    let words = |share: f64| format!("{:.1} %", 100.0 * share.abs());
+fn cycle_words(error: LoopError) -> Option<[Message; 2]> {
+    let words = |share: f64| fixed(100.0 * share.abs(), 1);
     Some([words(error.period?), words(error.amplitude?)])
 }
 
 /// Says that dry friction may stand in the place of viscous friction, by the cycle in the relay loop.
 pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
-    let [with_dry, with_viscous] = dry.in_loop.map(|error| {
-        cycle_words(error).map_or_else(
-            || "there is no cycle".to_owned(),
-            |[period, amplitude]| {
-                format!("the period is off by {period} and the amplitude by {amplitude}")
-            },
+    let level = with_error(dry.level.value, dry.level.std_error, &dry.level.unit);
+    let [error, before] = dry.errors.map(|error| fixed(error, 2));
+    verdict.text.add(if dry.class.len() > 1 {
+        msg!(
+            "The friction may be dry as well: with {} of Coulomb friction in the place of the viscous friction, both \
+             halves of the record are left with {} times the noise instead of {}, too small a difference to count.",
+            level,
+            error,
+            before
+        )
+    } else {
+        msg!(
+            "The friction is dry: with {} of Coulomb friction in the place of the viscous friction, both halves of \
+             the record are left with {} times the noise instead of {}, too small a difference to count.",
+            level,
+            error,
+            before
         )
     });
-    let lead = if dry.class.len() > 1 {
-        "The friction may be dry as well"
-    } else {
-        "The friction is dry"
-    };
-    let level = with_error(dry.level.value, dry.level.std_error, &dry.level.unit);
-    let [error, before] = dry.errors;
-    let _ = write!(
-        verdict.text,
-        " {lead}: with {level} of Coulomb friction in the place of the viscous friction, both halves of the record are \
-         left with {error:.2} times the noise instead of {before:.2}, too small a difference to count. Run free in its \
-         own relay loop, {with_dry}; with viscous friction {with_viscous}."
-    );
+    let [with_dry, with_viscous] = dry.in_loop.map(cycle_words);
+    verdict.text.add(match (with_dry, with_viscous) {
+        (Some([period, swing]), Some([other, old])) => msg!(
+            "Run free in its own relay loop, the period is off by {} % and the amplitude by {} %; with viscous \
+             friction the period is off by {} % and the amplitude by {} %.",
+            period,
+            swing,
+            other,
+            old
+        ),
+        (Some([period, swing]), None) => msg!(
+            "Run free in its own relay loop, the period is off by {} % and the amplitude by {} %; with viscous \
+             friction there is no cycle.",
+            period,
+            swing
+        ),
+        (None, Some([period, swing])) => msg!(
+            "Run free in its own relay loop, there is no cycle; with viscous friction the period is off by {} % and \
+             the amplitude by {} %.",
+            period,
+            swing
+        ),
+        (None, None) =>
+            "Run free in its own relay loop, there is no cycle; with viscous friction there is no cycle.".into(),
+    });
     verdict.missing.push(dry.class.clone());
     if dry.class.len() > 1 {
         verdict
             .next_experiment
-            .get_or_insert_with(|| NEXT_EXPERIMENT.to_owned());
+            .get_or_insert_with(|| NEXT_EXPERIMENT.into());
     }
 }
 
@@ -334,24 +373,29 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheW
     let (listed, error) = (names(&class, " or "), part.error);
     let reason = match part.refused {
         Refused::LeavesMore => {
-            let _ = write!(
-                verdict.text,
-                " Part of the way, and not named since it leaves more than it explains: {listed}, with which the error \
-                 is {error:.2} times the noise."
-            );
+            verdict.text.add(msg!(
+                "Part of the way, and not named since it leaves more than it explains: {}, with which the error is \
+                 {} times the noise.",
+                listed,
+                fixed(error, 2)
+            ));
             verdict.part_of_the_way = class;
             return;
         }
         Refused::WithoutMarks => {
-            " It is not named, since what sets it apart from others does not stand out in this record."
+            "It is not named, since what sets it apart from others does not stand out in this record."
         }
-        Refused::MayBeNothing => " It is not named, since by its error its size may be 0.",
-        Refused::Trifle => " It is not named, since it would be a trifle of the input.",
+        Refused::MayBeNothing => "It is not named, since by its error its size may be 0.",
+        Refused::Trifle => "It is not named, since it would be a trifle of the input.",
         Refused::Other => "",
     };
-    let _ = write!(
-        verdict.text,
-        " With {listed} the error would be {error:.2} times the noise.{reason}"
+    verdict.text.add(
+        msg!(
+            "With {} the error would be {} times the noise.",
+            listed,
+            fixed(error, 2)
+        )
+        .and(reason),
     );
     verdict.part_of_the_way = class;
 }
@@ -359,12 +403,12 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheW
 /// Says which effects would lower the error much, and to what, though chance is not ruled out.
 pub(super) fn add_hint(verdict: &mut Verdict, hint: Option<(Vec<EffectId>, f64)>) {
     if let Some((class, error)) = hint {
-        let _ = write!(
-            verdict.text,
-            " Perhaps {}: that would lower the error to {error:.2} times the noise, but not in enough independent \
-             stretches of the record to rule out chance.",
-            names(&in_registry_order(class), " or ")
-        );
+        verdict.text.add(msg!(
+            "Perhaps {}: that would lower the error to {} times the noise, but not in enough independent stretches \
+             of the record to rule out chance.",
+            names(&in_registry_order(class), " or "),
+            fixed(error, 2)
+        ));
     }
 }
 
@@ -392,7 +436,7 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, paramet
         verdict.unknown = true;
         verdict.text.clone_from(&check.text);
     } else {
-        verdict.text = format!("{} {}", check.text, verdict.text);
+        verdict.text = check.text.clone().and(std::mem::take(&mut verdict.text));
     }
 }
 
@@ -400,18 +444,16 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, paramet
 /// error.
 pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId], unsure: &[EffectId]) {
     if !idle.is_empty() {
-        let _ = write!(
-            verdict.text,
-            " In the model, but without a trace in these data: {}.",
+        verdict.text.add(msg!(
+            "In the model, but without a trace in these data: {}.",
             names(idle, ", ")
-        );
+        ));
     }
     if !unsure.is_empty() {
-        let _ = write!(
-            verdict.text,
-            " In the model, and the error is lower with it, but not beyond chance: {}.",
+        verdict.text.add(msg!(
+            "In the model, and the error is lower with it, but not beyond chance: {}.",
             names(unsure, ", ")
-        );
+        ));
     }
 }
 
@@ -421,7 +463,7 @@ pub(super) fn add_other_experiment(verdict: &mut Verdict, input: &[f64]) {
     let second = input.iter().find(|u| Some(*u) != first);
     let has_more = input.iter().any(|u| Some(u) != first && Some(u) != second);
     if let Some(advice) = verdict.next_experiment.as_mut().filter(|_| has_more) {
-        OTHER_EXPERIMENT.clone_into(advice);
+        *advice = OTHER_EXPERIMENT.into();
     }
 }
 
@@ -445,21 +487,20 @@ const OTHER_EXPERIMENT: &str = "Repeat the measurement with another input, of ot
 const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the \
     motion, a dead zone with the input, and a constant load never.";
 
-fn names(ids: &[EffectId], between: &str) -> String {
-    let names: Vec<&str> = ids.iter().map(|id| name_of(*id)).collect();
-    names.join(between)
+fn names(ids: &[EffectId], between: &'static str) -> Message {
+    Message::list(between, ids.iter().map(|id| name_of(*id)))
 }
 
 /// `Coulomb friction, friction level 0.0406 ± 0.0002 N m`.
-fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
+fn describe(class: &[EffectId], parameters: &[Parameter]) -> Message {
     if class.len() > 1 {
-        return format!(
+        return msg!(
             "{} (this measurement cannot tell them apart)",
             names(class, " or ")
         );
     }
     let Some(id) = class.first() else {
-        return String::new();
+        return Message::default();
     };
     let telling = effect::find(*id).map_or(1, Effect::telling);
     let own = parameters.iter().filter(|p| p.effect == Some(*id));
@@ -473,13 +514,13 @@ fn describe(class: &[EffectId], parameters: &[Parameter]) -> String {
         }
     });
     main.map_or_else(
-        || name_of(*id).to_owned(),
+        || name_of(*id).into(),
         |p| {
             let (name, value) = (name_of(*id), with_error(p.value, p.std_error, &p.unit));
             if name.eq_ignore_ascii_case(&p.label) {
-                format!("{name} {value}")
+                msg!("{} {}", name, value)
             } else {
-                format!("{name}, {} {value}", p.label)
+                msg!("{}, {} {}", name, Message::words(p.label.clone()), value)
             }
         },
     )

@@ -4,6 +4,8 @@ use super::report::StepReport;
 use super::step::{Candidate, Step};
 use super::verdict::Verdict;
 use crate::effect::{self, EffectId, name_of};
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::{brief, with_error};
 
 /// How far an effect brings a model.
@@ -47,25 +49,21 @@ impl StepReport {
 
     /// The answer in one or two sentences; `verdict` is what the data say in the end, if they have been heard so far,
     /// `present` are effects that the user knows of, and `noise` says that nothing is missing without what is needless.
-    pub fn answer(&self, verdict: Option<&Verdict>, present: &[EffectId], noise: bool) -> String {
+    pub fn answer(&self, verdict: Option<&Verdict>, present: &[EffectId], noise: bool) -> Message {
         let added = added(&self.step, verdict, present);
         match verdict {
             Some(verdict) if !verdict.contradicted.is_empty() => {
-                let names: Vec<&str> = verdict
-                    .contradicted
-                    .iter()
-                    .map(|c| c.name.as_str())
-                    .collect();
-                format!(
+                let names = verdict.contradicted.iter().map(|c| Message::name(&c.name));
+                msg!(
                     "The data contradict the given value of {}.",
-                    names.join(" and ")
+                    Message::list(" and ", names)
                 )
             }
             Some(verdict) if verdict.complete && added.is_empty() => {
-                "Nothing is missing: what the model leaves is measurement noise.".to_owned()
+                "Nothing is missing: what the model leaves is measurement noise.".into()
             }
             Some(verdict) if verdict.complete => complete(verdict, &added),
-            Some(_) => format!(
+            Some(_) => msg!(
                 "No effect in the library explains the rest: {}",
                 self.error_words(true)
             ),
@@ -74,32 +72,40 @@ impl StepReport {
     }
 
     /// Where something can still be added or removed.
-    fn on_the_way(&self, noise: bool) -> String {
+    fn on_the_way(&self, noise: bool) -> Message {
         match self.needless.first() {
             Some(idle) if noise => {
-                format!("Only noise is left, with or without {}.", name_of(*idle))
+                msg!("Only noise is left, with or without {}.", name_of(*idle))
             }
-            Some(idle) if self.suggestion.is_none() => format!(
+            Some(idle) if self.suggestion.is_none() => msg!(
                 "The model's error is {} × the noise, with or without {}.",
                 brief(self.step.error),
                 name_of(*idle)
             ),
             _ if self.step.error <= self.noise_floor => {
-                "The model matches the record to within the noise.".to_owned()
+                "The model matches the record to within the noise.".into()
             }
             _ => self.error_words(false),
         }
     }
 
     /// How large the error is, as a sentence or as the end of one.
-    fn error_words(&self, ends: bool) -> String {
-        let start = if ends { "the" } else { "The" };
+    fn error_words(&self, ends: bool) -> Message {
         let error = brief(self.step.error);
-        if self.step.left > 0.0 {
-            let share = share(self.step.left);
-            format!("{start} model's error is {error} × the noise ({share} % of the motion).")
-        } else {
-            format!("{start} model's error is {error} × the noise.")
+        let share = (self.step.left > 0.0).then(|| share(self.step.left));
+        match (share, ends) {
+            (Some(share), true) => msg!(
+                "the model's error is {} × the noise ({} % of the motion).",
+                error,
+                share
+            ),
+            (Some(share), false) => msg!(
+                "The model's error is {} × the noise ({} % of the motion).",
+                error,
+                share
+            ),
+            (None, true) => msg!("the model's error is {} × the noise.", error),
+            (None, false) => msg!("The model's error is {} × the noise.", error),
         }
     }
 }
@@ -115,7 +121,7 @@ fn share(share: f64) -> String {
 }
 
 /// What was found to be in the machine, each with its main parameter.
-fn added(step: &Step, verdict: Option<&Verdict>, present: &[EffectId]) -> Vec<String> {
+fn added(step: &Step, verdict: Option<&Verdict>, present: &[EffectId]) -> Vec<Message> {
     let of_machine = |id: &EffectId| {
         verdict.is_none_or(|v| v.missing.iter().flatten().any(|missing| missing == id))
     };
@@ -126,38 +132,42 @@ fn added(step: &Step, verdict: Option<&Verdict>, present: &[EffectId]) -> Vec<St
     let words = |id: &EffectId| {
         let main = step.parameters.iter().find(|p| p.effect == Some(*id));
         match main {
-            Some(p) => format!(
+            Some(p) => msg!(
                 "{}: {}",
                 name_of(*id),
                 with_error(p.value, p.std_error, &p.unit)
             ),
-            None => name_of(*id).to_owned(),
+            None => name_of(*id).into(),
         }
     };
     found.map(words).collect()
 }
 
 /// What was missing where nothing more is.
-fn complete(verdict: &Verdict, added: &[String]) -> String {
+fn complete(verdict: &Verdict, added: &[Message]) -> Message {
     if verdict.missing.iter().all(|class| class.len() < 2) {
+        let list = Message::list(" and ", added);
         let were = if added.len() > 1 {
-            "effects were"
+            msg!("The missing effects were {}.", list)
         } else {
-            "effect was"
+            msg!("The missing effect was {}.", list)
         };
-        let added = added.join(" and ");
-        return format!("The missing {were} {added}. Nothing more is missing.");
+        return were.and("Nothing more is missing.");
     }
-    let classes = verdict.missing.iter().map(|class| {
-        let names: Vec<&str> = class.iter().map(|id| name_of(*id)).collect();
-        names.join(" or ")
-    });
-    let classes: Vec<String> = classes.collect();
-    let are = if classes.len() > 1 {
-        "effects are"
+    let classes = verdict
+        .missing
+        .iter()
+        .map(|class| Message::list(" or ", class.iter().map(|id| name_of(*id))));
+    let classes = Message::list(", and ", classes);
+    if verdict.missing.len() > 1 {
+        msg!(
+            "The missing effects are {}: this record cannot tell which.",
+            classes
+        )
     } else {
-        "effect is"
-    };
-    let classes = classes.join(", and ");
-    format!("The missing {are} {classes}: this record cannot tell which.")
+        msg!(
+            "The missing effect is {}: this record cannot tell which.",
+            classes
+        )
+    }
 }

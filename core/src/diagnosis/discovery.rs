@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::experiment::NextExperiment;
 use super::parameter::Parameter;
+use crate::message::Message;
 
 /// How a search for a formula ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,7 +64,7 @@ pub struct Discovery {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experiment: Option<NextExperiment>,
     /// In plain words.
-    pub text: String,
+    pub text: Message,
 }
 
 impl Discovery {
@@ -76,7 +77,7 @@ impl Discovery {
             formulas: Vec::new(),
             curve: None,
             experiment: None,
-            text: "No model can be fitted to this record.".to_owned(),
+            text: "No model can be fitted to this record.".into(),
         }
     }
 

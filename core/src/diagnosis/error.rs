@@ -1,25 +1,20 @@
 //! Why a measurement cannot be criticised.
 
 use crate::effect::{EffectId, FormulaError};
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Why a measurement cannot be criticised.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CriticismError {
     /// The input never changes, so nothing can be learnt from it.
-    #[error(
-        "the input is constant over the whole file: an experiment must move it; of a step from rest, add the row before the step, with the input as it was then"
-    )]
     ConstantInput,
     /// An output never changes.
-    #[error(
-        "the column {name} is constant over the whole file: there is nothing to compare the model with"
-    )]
     ConstantOutput {
         /// Its name in the file.
         name: String,
     },
     /// A model of another kind of system.
-    #[error("the model is of a {model}, the measurement of a {measured}")]
     WrongKind {
         /// What the model is of.
         model: &'static str,
@@ -27,7 +22,6 @@ pub enum CriticismError {
         measured: &'static str,
     },
     /// A known parameter in another unit than this measurement gives it.
-    #[error("the model gives {symbol} in {said}, but with this measurement it is in {unit}")]
     WrongUnit {
         /// Symbol of the parameter.
         symbol: String,
@@ -37,7 +31,6 @@ pub enum CriticismError {
         unit: String,
     },
     /// An effect of the user's own that cannot be made.
-    #[error("{name}, {error}")]
     OwnEffect {
         /// Its name.
         name: String,
@@ -45,20 +38,59 @@ pub enum CriticismError {
         error: FormulaError,
     },
     /// A fitted model without the value of a parameter.
-    #[error("the fitted model has no value for {symbol}")]
     NoValue {
         /// Symbol of the parameter.
         symbol: String,
     },
     /// A model whose error is no number.
-    #[error(
-        "the error of the model is not finite: values of the measurement or of the model are too large or too small to calculate with"
-    )]
     NotFinite,
     /// An effect that makes no sense for this kind of system.
-    #[error("{effect} cannot be added to this kind of system")]
     WrongEffect {
         /// The effect.
         effect: EffectId,
     },
 }
+
+impl CriticismError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::ConstantInput => {
+                "the input is constant over the whole file: an experiment must move it; of a step from rest, \
+                 add the row before the step, with the input as it was then"
+                    .into()
+            }
+            Self::ConstantOutput { name } => msg!(
+                "the column {} is constant over the whole file: there is nothing to compare the model with",
+                Message::name(name.clone())
+            ),
+            Self::WrongKind { model, measured } => msg!(
+                "the model is of a {}, the measurement of a {}",
+                model,
+                measured
+            ),
+            Self::WrongUnit { symbol, said, unit } => msg!(
+                "the model gives {} in {}, but with this measurement it is in {}",
+                Message::name(symbol.clone()),
+                Message::name(said.clone()),
+                Message::name(unit.clone())
+            ),
+            Self::OwnEffect { name, error } => msg!("{}, {}", Message::name(name.clone()), error),
+            Self::NoValue { symbol } => msg!(
+                "the fitted model has no value for {}",
+                Message::name(symbol.clone())
+            ),
+            Self::NotFinite => {
+                "the error of the model is not finite: values of the measurement or of the model are too large \
+                 or too small to calculate with"
+                    .into()
+            }
+            Self::WrongEffect { effect } => msg!(
+                "{} cannot be added to this kind of system",
+                Message::name(effect.as_str())
+            ),
+        }
+    }
+}
+
+says!(CriticismError);

@@ -6,6 +6,7 @@ use super::limits::Limits;
 use super::parameter::Parameter;
 use super::program::{Program, short};
 use crate::effect::EffectId;
+use crate::message::Message;
 
 /// A model that explains the record, fitted to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,12 +27,12 @@ pub struct Trial {
     /// Root mean square of what the wrong model would leave, in noise units: of the pair that is closest.
     pub separation: f64,
     /// The program in words.
-    pub text: String,
+    pub text: Message,
 }
 
 impl Trial {
     /// The separation with as many digits as count, such as `3.81` or `less than 0.01`.
-    pub fn times_noise(&self) -> String {
+    pub fn times_noise(&self) -> Message {
         times(self.separation)
     }
 }
@@ -70,7 +71,7 @@ pub struct NextExperiment {
     /// The models that it tells apart, in the order of `class`.
     pub models: Vec<FittedModel>,
     /// In words with numbers.
-    pub text: String,
+    pub text: Message,
 }
 
 impl NextExperiment {
@@ -84,11 +85,14 @@ impl NextExperiment {
     }
 }
 
+/// A separation below this is as good as none, in times of the noise.
+pub(crate) const LEAST: f64 = 0.01;
+
 /// Times the noise, with as many digits as count.
-pub(crate) fn times(separation: f64) -> String {
-    if separation < 0.01 {
-        "less than 0.01".to_owned()
+pub(crate) fn times(separation: f64) -> Message {
+    if separation < LEAST {
+        "less than 0.01".into()
     } else {
-        short(separation)
+        short(separation).into()
     }
 }

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, says};
+use crate::msg;
+
 /// Bounds of an experiment. Every value is above 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
@@ -23,11 +26,23 @@ pub struct Limits {
 
 /// What is wrong with a limit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("limit '{text}': expected {expected}")]
 pub struct LimitError {
     text: String,
     expected: &'static str,
 }
+
+impl LimitError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        msg!(
+            "limit '{}': expected {}",
+            Message::name(self.text.clone()),
+            &self.expected
+        )
+    }
+}
+
+says!(LimitError);
 
 impl Limits {
     /// Takes limits as a user writes them, `input=0.5, duration=10, step=2e-4, speed=20, travel=none` in SI units;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::effect::StepPart;
+use crate::message::Message;
 
 /// An estimate without a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,5 +21,5 @@ pub struct MissingPart {
     /// Share of the squared error left that it would explain, 0 to 1.
     pub explained: f64,
     /// In a sentence with numbers.
-    pub text: String,
+    pub text: Message,
 }

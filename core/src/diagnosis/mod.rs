@@ -42,5 +42,5 @@ pub use screening::{InputCheck, InputVerdict, Screening, Subset};
 pub use step::{Candidate, Finding, Step};
 pub use verdict::{Contradiction, Overruled, Verdict};
 
-pub(crate) use experiment::times;
+pub(crate) use experiment::{LEAST, times};
 pub(crate) use program::short;

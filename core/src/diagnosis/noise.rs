@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Quantity;
+use crate::message::Message;
 use crate::uncertain::brief_quantity;
 
 /// The noise of a measured channel, in its own unit.
@@ -26,7 +27,7 @@ const COARSE: f64 = 0.3;
 
 impl ChannelNoise {
     /// `velocity noise 3.7 mrad/s, steps of 13.2 mrad/s`: steps far below the noise are not said.
-    pub fn words(&self) -> String {
+    pub fn words(&self) -> Message {
         let quantity = match self.quantity {
             Quantity::Input => "input",
             Quantity::Position | Quantity::LoadPosition => "position",
@@ -34,10 +35,13 @@ impl ChannelNoise {
             Quantity::Output => "output",
         };
         let size = |value: f64| brief_quantity(value, &self.unit);
-        let noise = format!("{quantity} noise {}", size(self.value));
+        let noise = size(self.value).into();
         match self.step.filter(|step| *step > COARSE * self.value) {
-            Some(step) => format!("{noise}, steps of {}", size(step)),
-            None => noise,
+            Some(step) => {
+                let words = format!("{quantity} noise {{}}, steps of {{}}");
+                Message::Words(words.into(), vec![noise, size(step).into()])
+            }
+            None => Message::Words(format!("{quantity} noise {{}}").into(), vec![noise]),
         }
     }
 }

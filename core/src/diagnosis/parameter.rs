@@ -4,6 +4,7 @@ use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::effect::EffectId;
+use crate::message::Message;
 use crate::uncertain::{NORMAL_95, interval, is_told};
 
 /// How well a parameter is known.
@@ -53,7 +54,7 @@ impl Parameter {
     }
 
     /// Its 95 % interval as text.
-    pub fn interval(&self) -> String {
+    pub fn interval(&self) -> Message {
         interval(self.value, self.std_error, NORMAL_95, &self.unit)
     }
 }

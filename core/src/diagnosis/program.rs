@@ -1,9 +1,9 @@
 //! What may drive an experiment: relays, levels in turn, sums of sines.
 
-use std::fmt::Write as _;
-
 use serde::{Deserialize, Serialize};
 
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::{Scale, brief_quantity, in_unit, significant};
 
 /// One sine of a sum, `amplitude sin(2 pi frequency t + phase)`.
@@ -49,7 +49,7 @@ pub enum Program {
 impl Program {
     /// In words with numbers: `a relay with gain 0.5 N m and hysteresis 0.6 rad/s`. `input` and `output` are the
     /// units.
-    pub fn words(&self, input: &str, output: &str) -> String {
+    pub fn words(&self, input: &str, output: &str) -> Message {
         let with = brief_quantity;
         match self {
             Self::Relay {
@@ -59,46 +59,54 @@ impl Program {
                 asymmetry,
             } => {
                 let hysteresis = with(*hysteresis, output);
-                let mut text = match gains.as_slice() {
-                    [gain] => format!("a relay with gain {}", with(*gain, input)),
+                let relay = match gains.as_slice() {
+                    [gain] => msg!("a relay with gain {}", with(*gain, input)),
                     [first, second] => {
                         let scale = Scale::of(first.abs().max(second.abs()), input);
                         let [first, second] = [first, second].map(|k| short(k / scale.factor));
-                        format!(
-                            "a relay with gains {first} and {} in turn, {} s each",
+                        msg!(
+                            "a relay with gains {} and {} in turn, {} s each",
+                            first,
                             in_unit(second, &scale.unit),
                             short(*hold)
                         )
                     }
-                    _ => format!(
+                    _ => msg!(
                         "a relay with gains {} in turn, {} s each",
                         list(gains, input),
                         short(*hold)
                     ),
                 };
+                let mut parts = vec![relay];
                 if *asymmetry != 0.0 {
-                    let _ = write!(text, ", asymmetry {}", short(*asymmetry));
+                    parts.push(msg!("asymmetry {}", short(*asymmetry)));
                 }
-                text + &format!(", hysteresis {hysteresis}")
+                parts.push(msg!("hysteresis {}", hysteresis));
+                Message::list(", ", parts)
             }
             Self::Levels { levels, hold } => {
                 let size = levels.first().map_or(0.0, |u| u.abs());
-                let (kind, shown): (_, &[f64]) = if levels.iter().all(|u| u.abs() == size) {
-                    ("two levels in a random order", &[size, -size])
+                let hold = short(*hold);
+                if levels.iter().all(|u| u.abs() == size) {
+                    let levels = list(&[size, -size], input);
+                    msg!(
+                        "two levels in a random order, each step {} s long: {}",
+                        hold,
+                        levels
+                    )
                 } else {
-                    ("a staircase", levels)
-                };
-                format!(
-                    "{kind}, each step {} s long: {}",
-                    short(*hold),
-                    list(shown, input)
-                )
+                    msg!(
+                        "a staircase, each step {} s long: {}",
+                        hold,
+                        list(levels, input)
+                    )
+                }
             }
             Self::Multisine { sines } => {
                 let ends = sines.first().zip(sines.last());
                 let (low, high) = ends.map_or((0.0, 0.0), |(a, b)| (a.frequency, b.frequency));
                 let size = sines.first().map_or(0.0, |s| s.amplitude);
-                format!(
+                msg!(
                     "a sum of {} sines from {} to {} Hz, {} each",
                     sines.len(),
                     short(low),

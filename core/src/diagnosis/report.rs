@@ -12,6 +12,7 @@ use super::step::Step;
 use super::verdict::Verdict;
 use crate::effect::EffectId;
 use crate::measurement::Kind;
+use crate::message::Message;
 
 /// Error of a perfect model, in units of the noise.
 pub(crate) const NOISE_FLOOR: f64 = 1.0;
@@ -89,7 +90,7 @@ impl Diagnosis {
                 experiments: Vec::new(),
                 contradicted: Vec::new(),
                 overruled: Vec::new(),
-                text: String::new(),
+                text: Message::default(),
             },
             seconds: 0.0,
         }

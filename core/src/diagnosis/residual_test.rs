@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::Message;
+
 /// What a residual is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -28,5 +30,5 @@ pub struct ResidualTest {
     /// The correlation is within its bound.
     pub passed: bool,
     /// The same as a sentence with numbers.
-    pub text: String,
+    pub text: Message,
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::parameter::Parameter;
 use crate::effect::EffectId;
 use crate::measurement::Kind;
+use crate::message::Message;
 
 /// Whether the input explains the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,7 +29,7 @@ pub struct InputCheck {
     /// In a word.
     pub verdict: InputVerdict,
     /// In a sentence, with numbers.
-    pub text: String,
+    pub text: Message,
     /// Whether what is said of the plant holds: in a closed loop, whether the record tells the plant from the
     /// controller.
     #[serde(default)]

@@ -7,6 +7,7 @@ use super::parameter::Parameter;
 use super::relay_loop::LoopError;
 use super::residual_test::ResidualTest;
 use crate::effect::EffectId;
+use crate::message::Message;
 
 /// A region in which the error concentrates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,7 +23,7 @@ pub struct Finding {
     /// Share of the samples in the region, or of the frequencies in a band, 0 to 1.
     pub share_of_samples: f64,
     /// The finding as a sentence with numbers.
-    pub text: String,
+    pub text: Message,
     /// Time spans (s) that lie in the region, merged and limited in number, for shading a plot.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spans: Vec<(f64, f64)>,

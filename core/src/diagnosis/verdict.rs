@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::experiment::NextExperiment;
 use crate::effect::EffectId;
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::{brief, with_error, written_like};
 
 /// A known value that the data contradict.
@@ -44,7 +46,7 @@ pub struct Overruled {
 
 impl Overruled {
     /// In words with numbers.
-    pub fn words(&self) -> String {
+    pub fn words(&self) -> Message {
         let Self {
             name,
             given,
@@ -53,8 +55,9 @@ impl Overruled {
             unit,
             ..
         } = self;
-        format!(
-            "The data overrule what was given: {name} is {} where the model has {}, {} tolerances away.",
+        msg!(
+            "The data overrule what was given: {} is {} where the model has {}, {} tolerances away.",
+            Message::name(name),
             written_like(*found, (*given, *tolerance), unit),
             with_error(*given, *tolerance, unit),
             brief((found - given).abs() / tolerance)
@@ -77,7 +80,7 @@ pub struct Verdict {
     /// Structure is left that no effect explains.
     pub unknown: bool,
     /// The experiment that would separate the classes, in words.
-    pub next_experiment: Option<String>,
+    pub next_experiment: Option<Message>,
     /// The same with numbers: one for each class of more than one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub experiments: Vec<NextExperiment>,
@@ -88,14 +91,14 @@ pub struct Verdict {
     #[serde(default)]
     pub overruled: Vec<Overruled>,
     /// The verdict in plain words.
-    pub text: String,
+    pub text: Message,
 }
 
 impl Verdict {
     /// Puts the experiments into words.
     pub(crate) fn say_experiments(&mut self) {
-        let texts: Vec<&str> = self.experiments.iter().map(|e| e.text.as_str()).collect();
-        self.next_experiment = Some(texts.join(" "));
+        let texts = self.experiments.iter().map(|e| &e.text);
+        self.next_experiment = Some(Message::list(" ", texts));
     }
 
     /// Puts a proposal in the place of another, in words too; one that is not there changes nothing.

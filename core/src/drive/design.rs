@@ -7,6 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Body, DriftingCycle, DriveError, VelocityRelay, check, drifting_cycle};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::relay::Relay;
 use crate::uncertain::brief;
 
@@ -43,7 +45,7 @@ pub struct DriftingTest {
     /// Duration that gives [`TRAVERSES`] crossings, s.
     pub duration: f64,
     /// What this test cannot do, a sentence each; empty if nothing stands against it.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
 }
 
 /// Crossings of the gap over which an estimate can be averaged.
@@ -305,61 +307,65 @@ impl Candidate {
         }
     }
 
-    fn warnings(&self, drive: &RoughDrive) -> Vec<String> {
+    fn warnings(&self, drive: &RoughDrive) -> Vec<Message> {
         let [swing, slow, fast, push, samples, noise] = self.misses(drive);
         let mut warnings = Vec::new();
-        let mut warn = |missed: f64, text: String| {
+        let mut warn = |missed: f64, text: Message| {
             if missed.is_nan() || missed > 1.0 + 1e-9 {
                 warnings.push(text);
             }
         };
         warn(
             swing,
-            format!(
-                "The cycle swings over {:.1} % of the gap: it should stay below {:.0} %. Less delay or more torque would help.",
-                100.0 * self.cycle.swing / drive.gap,
-                100.0 * LARGEST_SWING
+            msg!(
+                "The cycle swings over {} % of the gap: it should stay below {} %. Less delay or more torque would \
+                 help.",
+                fixed(100.0 * self.cycle.swing / drive.gap, 1),
+                fixed(100.0 * LARGEST_SWING, 0)
             ),
         );
         warn(
             slow,
             if self.traverse(drive) < 1e6 {
-                format!(
-                    "The cycle may need {:.0} s to cross the gap: friction and delay nearly cancel in their effect on the drift, or both are small.",
-                    self.traverse(drive)
+                msg!(
+                    "The cycle may need {} s to cross the gap: friction and delay nearly cancel in their effect on \
+                     the drift, or both are small.",
+                    fixed(self.traverse(drive), 0)
                 )
             } else {
-                "The cycle may not drift: without friction and delay, or where they cancel, no asymmetry moves it.".to_owned()
+                "The cycle may not drift: without friction and delay, or where they cancel, no asymmetry moves it."
+                    .into()
             },
         );
         warn(
             fast,
-            format!(
-                "The cycle crosses the gap within {:.0} periods: too few to see where its drift changes.",
-                self.traverse(drive) / self.cycle.period
+            msg!(
+                "The cycle crosses the gap within {} periods: too few to see where its drift changes.",
+                fixed(self.traverse(drive) / self.cycle.period, 0)
             ),
         );
         warn(
             push,
-            format!(
-                "The weaker push, {:.3}, does not move motor and load against their dry friction, {:.3}.",
-                self.weaker_push(),
-                drive.motor.coulomb + drive.load_coulomb
+            msg!(
+                "The weaker push, {}, does not move motor and load against their dry friction, {}.",
+                fixed(self.weaker_push(), 3),
+                fixed(drive.motor.coulomb + drive.load_coulomb, 3)
             ),
         );
         warn(
             samples,
-            format!(
-                "A period has {:.1} samples only: the controller should sample every {} s.",
-                self.samples(),
+            msg!(
+                "A period has {} samples only: the controller should sample every {} s.",
+                fixed(self.samples(), 1),
                 brief(self.cycle.period / FEWEST_SAMPLES)
             ),
         );
         warn(
             noise,
-            format!(
-                "The hysteresis, {:.3}, is less than {NOISE:.0} times the noise of the velocity: noise will switch the relay.",
-                self.relay.relay.hysteresis
+            msg!(
+                "The hysteresis, {}, is less than {} times the noise of the velocity: noise will switch the relay.",
+                fixed(self.relay.relay.hysteresis, 3),
+                fixed(NOISE, 0)
             ),
         );
         warnings

@@ -1,12 +1,13 @@
 //! What is wrong with a drive or a run.
 
+use crate::message::{Message, says};
+use crate::msg;
 use crate::relay::RelayError;
 
 /// A drive that cannot be, or a run that cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DriveError {
     /// A value out of range.
-    #[error("{name} is {value}: it must be {range}")]
     Value {
         /// Which.
         name: &'static str,
@@ -16,9 +17,22 @@ pub enum DriveError {
         range: &'static str,
     },
     /// The relay.
-    #[error(transparent)]
     Relay(#[from] RelayError),
 }
+
+impl DriveError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Value { name, value, range } => {
+                msg!("{} is {}: it must be {}", name, value, range)
+            }
+            Self::Relay(error) => error.message(),
+        }
+    }
+}
+
+says!(DriveError);
 
 pub(crate) fn check(
     name: &'static str,

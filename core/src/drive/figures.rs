@@ -6,6 +6,8 @@ use super::{
 };
 use crate::count::counted;
 use crate::figures::{Check, digits};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::relay::Relay;
 
 /// A figure of the paper as a run of a drive.
@@ -140,7 +142,7 @@ pub fn checks(number: u32, input: &DriveInput, run: &DriveRun, summary: &Summary
     }
 }
 
-fn check(text: String, holds: bool) -> Check {
+fn check(text: Message, holds: bool) -> Check {
     Check { text, holds }
 }
 
@@ -163,24 +165,24 @@ fn map_has_two_branches(input: &DriveInput, run: &DriveRun, summary: &Summary) -
     }
     vec![
         check(
-            format!(
-                "the branches are {:.2} mrad apart, 2β is {:.2} mrad",
-                MILLI * apart,
-                MILLI * gap
+            msg!(
+                "the branches are {} mrad apart, 2β is {} mrad",
+                fixed(MILLI * apart, 2),
+                fixed(MILLI * gap, 2)
             ),
             (apart / gap - 1.0).abs() < BRANCHES,
         ),
         check(
-            format!(
-                "on them the load moves {:.3} times as far as the motor",
-                slope / pushed
+            msg!(
+                "on them the load moves {} times as far as the motor",
+                fixed(slope / pushed, 3)
             ),
             (slope / pushed - 1.0).abs() < 0.01,
         ),
         check(
-            format!(
-                "between them the load moves {:.0} % as far as the motor",
-                100.0 * slipped / between
+            msg!(
+                "between them the load moves {} % as far as the motor",
+                fixed(100.0 * slipped / between, 0)
             ),
             slipped < 0.5 * between,
         ),
@@ -214,25 +216,25 @@ fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
     let widest = widest.fold(0.0, f64::max);
     vec![
         check(
-            format!(
+            msg!(
                 "{} at the ends of the gap",
                 counted(run.impacts(), "impact")
             ),
             run.impacts() > 0,
         ),
         check(
-            format!(
-                "d stays within {:.2} mrad, β is {:.2} mrad",
-                MILLI * widest,
-                MILLI * input.drive.half_gap
+            msg!(
+                "d stays within {} mrad, β is {} mrad",
+                fixed(MILLI * widest, 2),
+                fixed(MILLI * input.drive.half_gap, 2)
             ),
             widest <= input.drive.half_gap * (1.0 + CLOSED_FORM),
         ),
         check(
-            format!(
-                "an impact hands over up to {:.3} mN m s; the sum of both changes by {:.3} meanwhile, which the torque does",
-                MILLI * handed,
-                MILLI * lost
+            msg!(
+                "an impact hands over up to {} mN m s; the sum of both changes by {} meanwhile, which the torque does",
+                fixed(MILLI * handed, 3),
+                fixed(MILLI * lost, 3)
             ),
             allowed && handed > 0.0,
         ),
@@ -242,10 +244,7 @@ fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
 fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Vec<Check> {
     let gap = 2.0 * input.drive.half_gap;
     let Some(cycle) = &summary.cycle else {
-        return vec![check(
-            "the relay keeps the motor swinging".to_owned(),
-            false,
-        )];
+        return vec![check("the relay keeps the motor swinging".into(), false)];
     };
     let ups: Vec<f64> = run
         .events
@@ -260,29 +259,29 @@ fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Ve
     let missed = (period / cycle.period - 1.0).abs();
     vec![
         check(
-            format!(
-                "it swings over {:.2} of {:.2} mrad",
-                MILLI * cycle.swing,
-                MILLI * gap
+            msg!(
+                "it swings over {} of {} mrad",
+                fixed(MILLI * cycle.swing, 2),
+                fixed(MILLI * gap, 2)
             ),
             cycle.swing < gap,
         ),
         check(
-            format!("{} contacts with the load", run.impacts()),
+            msg!("{} contacts with the load", run.impacts()),
             run.impacts() == 0,
         ),
         check(
-            format!(
-                "its period, {:.4} ms, is that of the closed form to {} digits",
-                1e3 * period,
+            msg!(
+                "its period, {} ms, is that of the closed form to {} digits",
+                fixed(1e3 * period, 4),
                 digits(missed)
             ),
             missed < CLOSED_FORM,
         ),
         check(
-            format!(
-                "it drifts by {:.4} % of its swing a period",
-                100.0 * (cycle.drift / cycle.swing).abs()
+            msg!(
+                "it drifts by {} % of its swing a period",
+                fixed(100.0 * (cycle.drift / cycle.swing).abs(), 4)
             ),
             cycle.drift.abs() < CLOSED_FORM * cycle.swing,
         ),
@@ -291,13 +290,10 @@ fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Ve
 
 fn drifts_as_the_formula_says(input: &DriveInput, summary: &Summary) -> Vec<Check> {
     let (Some(cycle), Command::Relay(relay)) = (&summary.cycle, input.command) else {
-        return vec![check(
-            "the relay keeps the motor swinging".to_owned(),
-            false,
-        )];
+        return vec![check("the relay keeps the motor swinging".into(), false)];
     };
     let Some(drift) = summary.drifts.first() else {
-        return vec![check("the motor drifts freely".to_owned(), false)];
+        return vec![check("the motor drifts freely".into(), false)];
     };
     let missed = (drift.velocity / cycle.drift_velocity() - 1.0).abs();
     let direction = summary.direction(&relay);
@@ -312,22 +308,22 @@ fn drifts_as_the_formula_says(input: &DriveInput, summary: &Summary) -> Vec<Chec
     let other = drifting_cycle(&smooth, &late).map_or(0.0, |c| c.drift_velocity());
     vec![
         check(
-            format!(
-                "it drifts at {:.3} mrad/s, the closed form to {} digits",
-                MILLI * drift.velocity,
+            msg!(
+                "it drifts at {} mrad/s, the closed form to {} digits",
+                fixed(MILLI * drift.velocity, 3),
                 digits(missed)
             ),
             missed < CLOSED_FORM,
         ),
         check(
-            "with friction it drifts against the stronger push".to_owned(),
+            "with friction it drifts against the stronger push".into(),
             direction == Some(Direction::Against),
         ),
         check(
-            format!(
-                "without friction, but {:.1} ms late, it would drift with it, at {:.1} mrad/s",
-                1e3 * LATE,
-                MILLI * other
+            msg!(
+                "without friction, but {} ms late, it would drift with it, at {} mrad/s",
+                fixed(1e3 * LATE, 1),
+                fixed(MILLI * other, 1)
             ),
             other * relay.relay.mean_output() > 0.0,
         ),
@@ -348,30 +344,30 @@ fn changes_its_drift_at_the_ends(
     if let (Some(free), Some(engaged)) = (free, engaged_drift(run, summary)) {
         let engaged = engaged.abs();
         all.push(check(
-            format!(
-                "it drifts at {:.2} mrad/s in the gap, at {:.2} where it pushes the load",
-                MILLI * free,
-                MILLI * engaged
+            msg!(
+                "it drifts at {} mrad/s in the gap, at {} where it pushes the load",
+                fixed(MILLI * free, 2),
+                fixed(MILLI * engaged, 2)
             ),
             (engaged / free - 1.0).abs() > 0.05,
         ));
     } else {
         all.push(check(
-            "it drifts in the gap and pushes the load".to_owned(),
+            "it drifts in the gap and pushes the load".into(),
             false,
         ));
     }
     let count = summary.traverses.len();
     all.push(check(
-        format!("it crosses the gap {}", counted(count, "time")),
+        msg!("it crosses the gap {}", counted(count, "time")),
         count >= 2,
     ));
     let mean = summary.traverses.iter().map(|t| t.travel).sum::<f64>() / count.max(1) as f64;
     all.push(check(
-        format!(
-            "from contact to contact the motor moves {:.2} mrad, 2β is {:.2} mrad",
-            MILLI * mean,
-            MILLI * gap
+        msg!(
+            "from contact to contact the motor moves {} mrad, 2β is {} mrad",
+            fixed(MILLI * mean, 2),
+            fixed(MILLI * gap, 2)
         ),
         (mean / gap - 1.0).abs() < CROSSING,
     ));

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::course::{Course, End, Place};
 use super::run::at_rest;
 use super::servo::{Servo, ServoError};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::uncertain::digits;
 
 /// Digits of a position that is said.
@@ -46,7 +48,7 @@ pub struct Settled {
     /// It runs away.
     pub unbounded: bool,
     /// The answer in a sentence.
-    pub text: String,
+    pub text: Message,
 }
 
 /// Standstills after which a cycle is looked for, each time four times as many.
@@ -125,14 +127,14 @@ pub fn settled(servo: &Servo) -> Result<Settled, ServoError> {
         judge(simulated, exact);
     }
     let text = match exact.as_ref().or(simulated.as_ref()) {
-        Some(cycle) => format!(
-            "It hunts: the measured position swings to and fro by {} (half of peak to peak) with a period of {:.4} s, \
-             and the motor sticks for {:.0} % of the time.",
+        Some(cycle) => msg!(
+            "It hunts: the measured position swings to and fro by {} (half of peak to peak) with a period of {} s, \
+             and the motor sticks for {} % of the time.",
             digits(cycle.amplitude, DIGITS),
-            cycle.period,
-            100.0 * cycle.stuck
+            fixed(cycle.period, 4),
+            fixed(100.0 * cycle.stuck, 0)
         ),
-        None => "It hunts in a pattern of many swings, or in none that repeats.".to_owned(),
+        None => "It hunts in a pattern of many swings, or in none that repeats.".into(),
     };
     Ok(Settled {
         simulated,
@@ -150,7 +152,7 @@ fn rests(servo: &Servo, place: &Place) -> Settled {
         exact: None,
         error_at_rest: Some(error),
         unbounded: false,
-        text: format!(
+        text: msg!(
             "It does not hunt: it comes to rest {} from its reference.",
             digits(error, DIGITS)
         ),
@@ -163,7 +165,7 @@ fn runs_away() -> Settled {
         exact: None,
         error_at_rest: None,
         unbounded: true,
-        text: "The loop is unstable: its oscillation grows without bound.".to_owned(),
+        text: "The loop is unstable: its oscillation grows without bound.".into(),
     }
 }
 

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::course::{Course, End, Place};
 use super::servo::{Servo, ServoError};
+use crate::message::{Message, says};
+use crate::msg;
 use crate::simulate::{Noise, Options, SimulateError};
 
 /// A run from rest at 0, sampled.
@@ -29,12 +31,22 @@ pub struct HuntingRun {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HuntingError {
     /// The servo.
-    #[error("[servo]: {0}")]
     Servo(#[from] ServoError),
     /// Duration, step or noise.
-    #[error("[run]: {0}")]
     Run(#[from] SimulateError),
 }
+
+impl HuntingError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Servo(error) => msg!("[servo]: {}", error),
+            Self::Run(error) => msg!("[run]: {}", error),
+        }
+    }
+}
+
+says!(HuntingError);
 
 /// At rest at 0, in the middle of the play.
 pub(super) fn at_rest(servo: &Servo) -> (Place, f64) {

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, says};
+use crate::msg;
+
 /// Dry friction that falls from its level at rest (Stribeck 1902): `coulomb + excess exp(-(v/stribeck_speed)^2)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -69,12 +72,25 @@ pub struct Servo {
 
 /// What of a servo cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{name} is {value}: it must be {range}")]
 pub struct ServoError {
     pub(super) name: &'static str,
     pub(super) value: f64,
     pub(super) range: &'static str,
 }
+
+impl ServoError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        msg!(
+            "{} is {}: it must be {}",
+            &self.name,
+            &self.value,
+            &self.range
+        )
+    }
+}
+
+says!(ServoError);
 
 impl Friction {
     /// Level at a velocity other than 0.

@@ -10,6 +10,7 @@ use super::existence::ON_AXIS;
 use super::noisy::{NoisyCycle, noisy_cycle};
 use super::pattern::{self, OneCycle, SAME_CYCLE};
 use super::{Cycle, ExactCycle, Outcome, Prediction, dominant, typical_frequency, words};
+use crate::message::Message;
 use crate::plant::{MAX_ORDER, StateSpace, TransferFunction};
 use crate::relay::Relay;
 use crate::simulate::{Cut, Engine, Flow, Noise, Options, SimulateError, Sliding, Trajectory};
@@ -43,7 +44,7 @@ pub struct LongRunResult {
     /// How long the output slides along the threshold in each cycle, s: the relay is then not one of two levels.
     pub slides: f64,
     /// In a sentence or two.
-    pub text: String,
+    pub text: Message,
 }
 
 /// Typical periods of the first part of a run; each further part doubles the whole.
@@ -233,7 +234,7 @@ impl LongRunResult {
         self.cycle.filter(|_| told)
     }
 
-    fn of(outcome: Option<Outcome>, text: String) -> Self {
+    fn of(outcome: Option<Outcome>, text: Message) -> Self {
         Self {
             outcome,
             cycle: None,
@@ -247,7 +248,7 @@ impl LongRunResult {
         outcome: Outcome,
         [period, amplitude]: OneCycle,
         stable: Option<bool>,
-        text: String,
+        text: Message,
     ) -> Self {
         Self {
             cycle: Some(Cycle {
@@ -384,7 +385,7 @@ impl<'a> View<'a> {
         let overlap = |s: &[f64; 2]| (s[1].min(to) - s[0].max(to - last[0])).max(0.0);
         let slid: f64 = seen.run.sliding.iter().map(overlap).sum();
         if slid > 0.0 {
-            text += &words::slides_within(slid);
+            text.add(words::slides_within(slid));
         }
         let found = LongRunResult::cycle(Outcome::LimitCycle, last, stable, text);
         Some(LongRunResult {

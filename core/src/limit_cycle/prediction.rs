@@ -9,6 +9,8 @@ use super::{
     describing_function, exact_cycles, existence, likely_half_periods, settled_cycle,
     typical_frequency,
 };
+use crate::message::{Message, fixed, says};
+use crate::msg;
 use crate::plant::{PlantError, TransferFunction};
 use crate::relay::{Relay, RelayError};
 use crate::root::illinois;
@@ -39,24 +41,17 @@ pub struct Trust {
     /// The same for the amplitude.
     pub amplitude_error: Option<f64>,
     /// Why, in words.
-    pub text: String,
+    pub text: Message,
 }
 
 /// Why there is no prediction.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PredictError {
     /// The plant.
-    #[error(transparent)]
     Plant(#[from] PlantError),
     /// The relay.
-    #[error(transparent)]
     Relay(#[from] RelayError),
     /// A delay beside which the plant is at rest at once.
-    #[error(
-        "dead time and delay are {} s, where the plant's slowest time constant allows {} s at most: beyond that they are too far apart to compute with",
-        brief(*lag),
-        brief(*most)
-    )]
     LongDelay {
         /// Dead time and delay, s.
         lag: f64,
@@ -64,6 +59,24 @@ pub enum PredictError {
         most: f64,
     },
 }
+
+impl PredictError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Plant(error) => error.message(),
+            Self::Relay(error) => error.message(),
+            Self::LongDelay { lag, most } => msg!(
+                "dead time and delay are {} s, where the plant's slowest time constant allows {} s at most: beyond \
+                 that they are too far apart to compute with",
+                brief(*lag),
+                brief(*most)
+            ),
+        }
+    }
+}
+
+says!(PredictError);
 
 /// Largest ratio of the delay to the plant's slowest time constant: of an `f64`'s 16 digits, the instants of switches
 /// then have seven left to say what the plant does.
@@ -73,8 +86,8 @@ const MAX_DELAY: f64 = 1e9;
 const TRUSTED_ERROR: f64 = 0.05;
 
 /// What is said of one that can be trusted, with noise and without.
-const IS_GOOD: &str = "The describing function is good here:";
-const GOOD_WITHOUT_NOISE: &str = "Without noise the describing function is good:";
+const IS_GOOD: &str = "The describing function is good here: {}.";
+const GOOD_WITHOUT_NOISE: &str = "Without noise the describing function is good: {}.";
 
 /// Guesses closer than this ratio share a scan, which reaches a factor of five to either side.
 const SAME_SCAN: f64 = 4.0;
@@ -119,7 +132,11 @@ impl Prediction {
         let mut trust = trust(self, plant, relay, Some(outcome));
         if matches!(outcome, Outcome::NoisyLimitCycle | Outcome::Chatter) {
             // The exact cycle, with which it is compared, knows no noise.
-            trust.text = trust.text.replace(IS_GOOD, GOOD_WITHOUT_NOISE);
+            if let Message::Words(words, _) = &mut trust.text
+                && words == IS_GOOD
+            {
+                *words = GOOD_WITHOUT_NOISE.into();
+            }
         }
         trust
     }
@@ -202,9 +219,11 @@ fn trust(
         _ => "a cycle",
     };
     let Some(nearest) = nearest else {
-        return untrusted(format!(
-            "The describing function predicts {kind} of period {period:.4} s, but there is no exact cycle with two \
-             switches a period near it: do not trust it here."
+        return untrusted(msg!(
+            "The describing function predicts {} of period {} s, but there is no exact cycle with two \
+             switches a period near it: do not trust it here.",
+            kind,
+            fixed(period, 4)
         ));
     };
     let errors = [
@@ -213,23 +232,32 @@ fn trust(
     ];
     let accurate = errors.iter().all(|e| e.abs() <= TRUSTED_ERROR);
     let smooth = main.distortion <= TRUSTED_DISTORTION;
-    let differences = format!(
-        "it is off by {:+.1} % in period and {:+.1} % in amplitude",
-        100.0 * errors[0],
-        100.0 * errors[1]
+    let differences = msg!(
+        "it is off by {} % in period and {} % in amplitude",
+        format!("{:+.1}", 100.0 * errors[0]),
+        format!("{:+.1}", 100.0 * errors[1])
     );
-    let harmonics = format!(
-        "harmonics {:.0} % as large as the first reach the output",
-        100.0 * main.distortion
+    let harmonics = msg!(
+        "harmonics {} % as large as the first reach the output",
+        fixed(100.0 * main.distortion, 0)
     );
     let text = match (accurate, smooth) {
-        (true, true) => format!("{IS_GOOD} {differences}."),
-        (true, false) => format!(
-            "Do not trust the describing function here, although {differences}: {harmonics}."
+        (true, true) => msg!(IS_GOOD, differences),
+        (true, false) => msg!(
+            "Do not trust the describing function here, although {}: {}.",
+            differences,
+            harmonics
         ),
-        (false, true) => format!("Do not trust the describing function here: {differences}."),
+        (false, true) => msg!(
+            "Do not trust the describing function here: {}.",
+            differences
+        ),
         (false, false) => {
-            format!("Do not trust the describing function here: {differences}, since {harmonics}.")
+            msg!(
+                "Do not trust the describing function here: {}, since {}.",
+                differences,
+                harmonics
+            )
         }
     };
     Trust {
@@ -244,27 +272,28 @@ fn trust(
 fn trust_of_none(exact: Option<&ExactCycle>, keeps_switching: bool) -> Trust {
     match exact {
             Some(c) => {
-                let kind = match c.cycle.stable {
-                    Some(false) => "an unstable one",
-                    _ => "one",
-                };
-                untrusted(format!(
-                    "The describing function sees no oscillation; exactly there is {kind} of period {:.4} s: do not trust it here.",
-                    c.cycle.period
-                ))
+                let period = fixed(c.cycle.period, 4);
+                untrusted(match c.cycle.stable {
+                    Some(false) => msg!(
+                        "The describing function sees no oscillation; exactly there is an unstable one of period {} \
+                         s: do not trust it here.", period),
+                    _ => msg!(
+                        "The describing function sees no oscillation; exactly there is one of period {} s: do not \
+                         trust it here.", period),
+                })
             }
             None if keeps_switching => untrusted(
                 "The describing function sees no oscillation, though the relay keeps switching: do not trust it here."
-                    .to_owned(),
+                    .into(),
             ),
             None => Trust {
                 reliable: true,
-                ..untrusted("The describing function sees no oscillation, and there is none.".to_owned())
+                ..untrusted("The describing function sees no oscillation, and there is none.".into())
             },
         }
 }
 
-fn untrusted(text: String) -> Trust {
+fn untrusted(text: Message) -> Trust {
     Trust {
         text,
         ..Trust::default()
@@ -278,26 +307,30 @@ fn trust_of_continuum(plant: &TransferFunction, relay: &Relay, cycle: &Cycle) ->
     let [low, high] = [exact / SAME_KIND, exact * SAME_KIND];
     if (off(low) < 0.0) == (off(high) < 0.0) {
         return Trust {
-            text: "The describing function sees no continuum here: do not trust it.".to_owned(),
+            text: "The describing function sees no continuum here: do not trust it.".into(),
             ..Trust::default()
         };
     }
     let omega = illinois((low, off(low)), (high, off(high)), off);
     let error = exact / omega - 1.0;
     let good = error.abs() <= TRUSTED_ERROR;
-    let verdict = if good {
-        "is good"
-    } else {
-        "should not be trusted"
-    };
+    let off = format!("{:+.1}", 100.0 * error);
     Trust {
         reliable: good,
         period_error: Some(error),
         amplitude_error: None,
-        text: format!(
-            "The describing function {verdict} here: it sees a continuum as well, and at the same amplitude its period \
-             is off by {:+.1} %.",
-            100.0 * error
-        ),
+        text: if good {
+            msg!(
+                "The describing function is good here: it sees a continuum as well, and at the same amplitude its \
+                 period is off by {} %.",
+                off
+            )
+        } else {
+            msg!(
+                "The describing function should not be trusted here: it sees a continuum as well, and at the same \
+                 amplitude its period is off by {} %.",
+                off
+            )
+        },
     }
 }

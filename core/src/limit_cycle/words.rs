@@ -3,6 +3,8 @@
 use super::noisy::NoisyCycle;
 use super::pattern::{OneCycle, SAME_CYCLE, difference};
 use super::{Cycle, ExactCycle, Prediction};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::relay::Relay;
 use crate::simulate::Noise;
 use crate::uncertain::digits;
@@ -30,9 +32,9 @@ fn uncertain([mean, spread]: [f64; 2]) -> String {
     format!("{mean:.decimals$} ± {spread:.decimals$}")
 }
 
-fn values([period, amplitude]: &OneCycle) -> String {
+fn values([period, amplitude]: &OneCycle) -> Message {
     let [period, amplitude] = [*period, *amplitude].map(significant);
-    format!("period {period} s, amplitude {amplitude}")
+    msg!("period {} s, amplitude {}", period, amplitude)
 }
 
 /// It settles into a cycle.
@@ -40,7 +42,7 @@ pub(super) fn limit_cycle(
     cycle: &OneCycle,
     stable: Option<bool>,
     prediction: &Prediction,
-) -> String {
+) -> Message {
     let slow = prediction.exact.iter().find(|c| {
         let of = [c.cycle.period, c.cycle.amplitude];
         difference(cycle, &of) < SAME_CYCLE
@@ -48,125 +50,123 @@ pub(super) fn limit_cycle(
     let slow = slow
         .and_then(|c| c.multiplier)
         .filter(|m| (SLOW..1.0).contains(m));
-    let mut text = format!("It oscillates: {}.", values(cycle));
+    let mut text = msg!("It oscillates: {}.", values(cycle));
     if let Some(multiplier) = slow {
-        let left = format!("{multiplier:.4}");
-        text.push_str(" It settles slowly: a small disturbance shrinks to ");
-        text.push_str(&left);
-        text.push_str(" of its size in one period.");
+        text.add(msg!(
+            "It settles slowly: a small disturbance shrinks to {} of its size in one period.",
+            fixed(multiplier, 4)
+        ));
     }
     if stable.is_none() {
-        text += " Small disturbances neither die out nor grow.";
+        text.add("Small disturbances neither die out nor grow.");
     }
     let rests = prediction.existence.is_some_and(|e| !e.holds);
     if rests {
-        text += " From other starts it can also come to rest: the relay's push does not reach beyond both thresholds.";
+        text.add(
+            "From other starts it can also come to rest: the relay's push does not reach beyond both thresholds.",
+        );
     }
     text
 }
 
 /// A part of each cycle is sliding.
-pub(super) fn slides_within(duration: f64) -> String {
-    format!(
-        " In each cycle the output slides along the threshold for {} s.",
+pub(super) fn slides_within(duration: f64) -> Message {
+    msg!(
+        "In each cycle the output slides along the threshold for {} s.",
         significant(duration)
     )
 }
 
 /// The output stays within the thresholds, at `level` if it is known.
-pub(super) fn rest(level: Option<f64>, cycles: usize) -> String {
+pub(super) fn rest(level: Option<f64>, cycles: usize) -> Message {
     let after = match cycles {
-        0..MANY => String::new(),
-        _ => format!(" It takes {cycles} cycles to get there."),
+        0..MANY => Message::default(),
+        _ => msg!("It takes {} cycles to get there.", cycles),
     };
     let rest = match level.filter(|l| l.is_finite()) {
-        Some(level) => format!(
+        Some(level) => msg!(
             "It comes to rest: with the relay held, the output goes to {}, which is not beyond the threshold.",
             significant(level)
         ),
-        None => "It comes to rest: the relay no longer switches.".to_owned(),
+        None => "It comes to rest: the relay no longer switches.".into(),
     };
-    rest + &after
+    rest.and(after)
 }
 
 /// The relay holds the output on its threshold.
-pub(super) fn sliding(since: f64, rests: bool) -> String {
-    let rest = if rests {
-        ", and comes to rest there"
+pub(super) fn sliding(since: f64, rests: bool) -> Message {
+    let since = significant(since);
+    let slides = if rests {
+        msg!(
+            "It slides: from {} s on the relay holds the output on its threshold, and comes to rest there.",
+            since
+        )
     } else {
-        ""
+        msg!(
+            "It slides: from {} s on the relay holds the output on its threshold.",
+            since
+        )
     };
-    format!(
-        "It slides: from {} s on the relay holds the output on its threshold{rest}. There is no oscillation.",
-        significant(since)
-    )
+    slides.and("There is no oscillation.")
 }
 
 /// Infinitely many switches up to an instant.
-pub(super) fn accumulates(end: f64) -> String {
-    format!(
+pub(super) fn accumulates(end: f64) -> Message {
+    msg!(
         "The switches follow each other ever faster: from {} s on the relay holds the output on its threshold.",
         significant(end)
     )
 }
 
 /// Switches far faster than the plant.
-pub(super) fn chatters() -> String {
-    "The relay chatters: it switches far faster than the plant can follow.".to_owned()
+pub(super) fn chatters() -> Message {
+    "The relay chatters: it switches far faster than the plant can follow.".into()
 }
 
 /// No input of the relay's brings it back.
-pub(super) fn unstable() -> String {
+pub(super) fn unstable() -> Message {
     "The output grows without bound: the plant is unstable, and has gone farther than the relay's push can bring it \
      back from."
-        .to_owned()
+        .into()
 }
 
 /// The relay is held and the plant integrates.
-pub(super) fn held() -> String {
-    "The output grows without bound: the relay no longer switches, and the plant integrates its push.".to_owned()
+pub(super) fn held() -> Message {
+    "The output grows without bound: the relay no longer switches, and the plant integrates its push.".into()
 }
 
 /// Each swing is larger than the one before.
-pub(super) fn grows(cycles: &[OneCycle]) -> String {
-    let listed: Vec<String> = cycles
-        .iter()
-        .take(LISTED)
-        .map(|c| significant(c[1]))
-        .collect();
-    format!(
+pub(super) fn grows(cycles: &[OneCycle]) -> Message {
+    let listed = cycles.iter().take(LISTED).map(|c| significant(c[1]));
+    msg!(
         "The output grows without bound: from cycle to cycle the amplitude is {}, and so on.",
-        listed.join(", ")
+        Message::list(", ", listed)
     )
 }
 
 /// One of a continuum.
-pub(super) fn continuum(cycle: &OneCycle, others: Option<&[Cycle]>) -> String {
-    let others: Vec<String> = others
-        .into_iter()
-        .flatten()
-        .map(|c| {
-            format!(
-                "{} s at amplitude {}",
-                significant(c.period),
-                significant(c.amplitude)
-            )
-        })
-        .collect();
-    format!(
+pub(super) fn continuum(cycle: &OneCycle, others: Option<&[Cycle]>) -> Message {
+    let others = others.into_iter().flatten().map(|c| {
+        msg!(
+            "{} s at amplitude {}",
+            significant(c.period),
+            significant(c.amplitude)
+        )
+    });
+    msg!(
         "It oscillates: {}. This is one of a continuum of cycles: every start keeps its own, and the period depends on \
          the amplitude ({}).",
         values(cycle),
-        others.join(", ")
+        Message::list(", ", others)
     )
 }
 
 /// Several cycles that repeat together.
-pub(super) fn pattern(cycles: &[OneCycle]) -> String {
+pub(super) fn pattern(cycles: &[OneCycle]) -> Message {
     let period: f64 = cycles.iter().map(|c| c[0]).sum();
     let amplitudes = cycles.iter().map(|c| c[1]);
     let (low, high) = amplitudes.fold((f64::INFINITY, 0.0_f64), |(l, h), a| (l.min(a), h.max(a)));
-    format!(
+    msg!(
         "It oscillates in a pattern of {} cycles: {} s in all, amplitudes from {} to {}.",
         cycles.len(),
         significant(period),
@@ -176,10 +176,10 @@ pub(super) fn pattern(cycles: &[OneCycle]) -> String {
 }
 
 /// No pattern was found.
-pub(super) fn irregular(cycles: &[OneCycle]) -> String {
+pub(super) fn irregular(cycles: &[OneCycle]) -> Message {
     let half = &cycles[cycles.len() / 2..];
     let mean = |i: usize| half.iter().map(|c| c[i]).sum::<f64>() / half.len() as f64;
-    format!(
+    msg!(
         "It oscillates without a pattern that repeats: mean {} over {} cycles.",
         values(&[mean(0), mean(1)]),
         half.len()
@@ -187,12 +187,13 @@ pub(super) fn irregular(cycles: &[OneCycle]) -> String {
 }
 
 /// It leaves an unstable cycle slowly.
-pub(super) fn leaves(exact: &ExactCycle, cycles: &[OneCycle]) -> String {
+pub(super) fn leaves(exact: &ExactCycle, cycles: &[OneCycle]) -> Message {
     let multiplier = exact.multiplier.unwrap_or(f64::NAN);
-    format!(
-        "It leaves the unstable cycle of {} slowly: a disturbance grows by the factor {multiplier:.7} in each period, \
+    msg!(
+        "It leaves the unstable cycle of {} slowly: a disturbance grows by the factor {} in each period, \
          and after {} cycles the run has not settled.",
         values(&[exact.cycle.period, exact.cycle.amplitude]),
+        fixed(multiplier, 7),
         cycles.len()
     )
 }
@@ -203,53 +204,58 @@ pub(super) fn noisy(
     relay: &Relay,
     noise: Noise,
     prediction: &Prediction,
-) -> String {
+) -> Message {
     let [period, amplitude] = [found.period, found.amplitude].map(uncertain);
     if found.chatters() {
-        return format!(
-            "The relay chatters in the noise: {:.0} switches in a cycle where two would do. Make its hysteresis ({}) \
-             larger than the noise (standard deviation {}): three times as large is usual. Mean period {period} s, \
-             amplitude {amplitude}.",
-            found.switches,
+        return msg!(
+            "The relay chatters in the noise: {} switches in a cycle where two would do. Make its hysteresis ({}) \
+             larger than the noise (standard deviation {}): three times as large is usual. Mean period {} s, \
+             amplitude {}.",
+            fixed(found.switches, 0),
             significant(relay.hysteresis),
-            significant(noise.std_dev)
+            significant(noise.std_dev),
+            period,
+            amplitude
         );
     }
     let without = prediction
         .exact
         .iter()
         .find(|c| c.cycle.stable == Some(true));
-    let without = without.map_or_else(String::new, |c| {
-        format!(
-            " Without noise: {}.",
+    let without = without.map_or_else(Message::default, |c| {
+        msg!(
+            "Without noise: {}.",
             values(&[c.cycle.period, c.cycle.amplitude])
         )
     });
-    format!(
-        "It oscillates in the noise: mean period {period} s, amplitude {amplitude} (± from cycle to cycle).{without}"
+    msg!(
+        "It oscillates in the noise: mean period {} s, amplitude {} (± from cycle to cycle).",
+        period,
+        amplitude
     )
+    .and(without)
 }
 
 /// Nothing happens, noise or not.
-pub(super) fn rest_in_noise() -> String {
-    "It comes to rest: the noise does not make the relay switch.".to_owned()
+pub(super) fn rest_in_noise() -> Message {
+    "It comes to rest: the noise does not make the relay switch.".into()
 }
 
 /// The noise alone switches the relay.
-pub(super) fn chatter_at_rest(switches: usize, duration: f64) -> String {
-    format!(
-        "The relay chatters in the noise: {switches} switches in {} s, and the output does not swing.",
+pub(super) fn chatter_at_rest(switches: usize, duration: f64) -> Message {
+    msg!(
+        "The relay chatters in the noise: {} switches in {} s, and the output does not swing.",
+        switches,
         significant(duration)
     )
 }
 
 /// No run is long enough.
-pub(super) fn too_fast() -> String {
-    "A part of the plant is far too fast for the rest: the run was cut. Leave that part out."
-        .to_owned()
+pub(super) fn too_fast() -> Message {
+    "A part of the plant is far too fast for the rest: the run was cut. Leave that part out.".into()
 }
 
 /// Hardly any switch.
-pub(super) fn too_slow() -> String {
-    "The relay has hardly switched in a very long run: what becomes of it is not seen.".to_owned()
+pub(super) fn too_slow() -> Message {
+    "The relay has hardly switched in a very long run: what becomes of it is not seen.".into()
 }

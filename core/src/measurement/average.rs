@@ -1,6 +1,8 @@
 //! Records of processes that were sampled far faster than anything in them moves: means stand for them.
 
 use super::{Channel, Kind};
+use crate::message::Message;
+use crate::msg;
 
 /// Samples from which a record is long, and fewest that are left of one.
 const LONG: usize = 20_000;
@@ -32,7 +34,7 @@ pub(super) fn thin(
     time: &mut Vec<f64>,
     input: &mut Channel,
     outputs: &mut [Channel],
-) -> Option<String> {
+) -> Option<Message> {
     let n = time.len();
     if kind != Kind::Process || n <= LONG || has_gap(time) || outputs.iter().any(is_held) {
         return None;
@@ -69,8 +71,10 @@ pub(super) fn thin(
         .map(|at| sums.mean(at, (at + every).min(n)))
         .collect();
     *time = places().map(|at| time[at]).collect();
-    Some(format!(
-        "The record has {n} samples, many more than what moves in it needs: the means of {every} are taken."
+    Some(msg!(
+        "The record has {} samples, many more than what moves in it needs: the means of {} are taken.",
+        n,
+        every
     ))
 }
 

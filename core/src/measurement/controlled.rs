@@ -3,6 +3,8 @@
 use super::Quantity;
 use super::header::{Field, Role, shorten};
 use super::resembling::{is_set_point, is_warm, resembles};
+use crate::message::Message;
+use crate::msg;
 
 const INPUT: Role = Role::Measured(Quantity::Input);
 const OUTPUT: Role = Role::Measured(Quantity::Output);
@@ -12,21 +14,19 @@ const OUTPUT: Role = Role::Measured(Quantity::Output);
 pub(super) fn as_in_the_loop(
     fields: &mut [Field],
     rows: impl Iterator<Item = Vec<Option<f64>>>,
-) -> Option<String> {
+) -> Option<Message> {
     let put_out = fields
         .iter()
         .position(|f| f.role == Some(OUTPUT) && f.name.eq_ignore_ascii_case("output"))?;
     let own = shorten(&fields[put_out].name);
     let wanted = fields.iter().position(|f| is_set_point(&f.name));
-    let (comes_out, why) = if let Some(wanted) = wanted {
+    let (comes_out, nearer) = if let Some(wanted) = wanted {
         let nearest = nearest(fields, wanted, rows).filter(|k| *k != put_out)?;
         let [aim, output] = [wanted, nearest].map(|k| shorten(&fields[k].name));
-        let why = format!("'{output}' comes nearer to '{aim}' than '{own}' does");
-        (nearest, why)
+        (nearest, Some([output, aim]))
     } else {
         let warm = only_warm(fields)?;
-        let name = shorten(&fields[warm].name);
-        (warm, format!("'{name}' is what comes out"))
+        (warm, None)
     };
     let another = |(k, field): (usize, &Field)| k != comes_out && field.role == Some(INPUT);
     if fields.iter().enumerate().any(another) {
@@ -40,9 +40,25 @@ pub(super) fn as_in_the_loop(
     if !moves {
         fields[comes_out].role = Some(OUTPUT);
     }
-    Some(format!(
-        "{why}: '{own}' is taken for what a controller put out, which is the input here."
-    ))
+    let own = Message::name(own);
+    Some(if let Some(nearer) = nearer {
+        let [output, aim] = nearer.map(Message::name);
+        msg!(
+            "'{}' comes nearer to '{}' than '{}' does: '{}' is taken for what a controller put out, which is the \
+             input here.",
+            output,
+            aim,
+            &own,
+            &own
+        )
+    } else {
+        let warm = Message::name(shorten(&fields[comes_out].name));
+        msg!(
+            "'{}' is what comes out: '{}' is taken for what a controller put out, which is the input here.",
+            warm,
+            own
+        )
+    })
 }
 
 /// The column that comes nearest to a set point, which is wanted of what comes out.

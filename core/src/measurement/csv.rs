@@ -18,6 +18,8 @@ use super::switched_on;
 use super::text::{Dialect, Text, open, survey};
 use super::times;
 use super::{Channel, Kind, MIN_SAMPLES, Measurement, Quantity};
+use crate::message::Message;
+use crate::msg;
 
 /// Reads a text with columns, with a mapping, a torque constant and a period.
 pub(super) fn import_text(
@@ -47,8 +49,10 @@ pub(super) fn import_text(
     let mut options = options.clone();
     if let Some((place, period)) = period_column(&fields, &options, rows.clone(), dialect) {
         let name = shorten(&fields[place].name);
-        notes.push(format!(
-            "The column '{name}' is taken for the sampling period, {period}."
+        notes.push(msg!(
+            "The column '{}' is taken for the sampling period, {} s.",
+            Message::name(name),
+            period.seconds()
         ));
         options.period = Some(period);
     }
@@ -85,7 +89,11 @@ pub(super) fn import_text(
     } = table;
     header.notes.extend(said_of_repeated(repeated));
     header.notes.extend(tail.map(|(line, begin)| {
-        format!("From line {line} on there are no rows of numbers ('{begin}'): left out.")
+        msg!(
+            "From line {} on there are no rows of numbers ('{}'): left out.",
+            line,
+            Message::name(begin)
+        )
     }));
     header.notes.extend(mended);
     header
@@ -127,7 +135,7 @@ fn period_column<'a>(
 
 /// How the times are to be read, by the first of them, and what is to be said of it: dates count in seconds, and clocks
 /// that count from 1970 say their unit by their size.
-fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Option<String>) {
+fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Option<Message>) {
     let mut texts = Vec::with_capacity(fields.len());
     split_row(row, dialect.separator, &mut texts);
     let mut times = fields
@@ -137,15 +145,17 @@ fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Optio
     let Some((field, first)) = times.next() else {
         return Default::default();
     };
-    let (name, shown) = (shorten(&field.name), shorten(first));
+    let [name, shown] = [&field.name, first].map(|text| Message::name(shorten(text)));
     let Some(number) = dialect.mark.number(first) else {
         let dated = Clock::default().date(first).is_some();
         if dated {
             field.unit = Some("s".to_owned());
         }
         let note = || {
-            format!(
-                "The column '{name}' has dates or times of day: counted in seconds from {shown}."
+            msg!(
+                "The column '{}' has dates or times of day: counted in seconds from {}.",
+                name,
+                shown
             )
         };
         return (Clock::default(), dated.then(note));
@@ -156,23 +166,28 @@ fn clock(fields: &mut [Field], row: &str, mut dialect: Dialect) -> (Clock, Optio
         (Some(own), Some(unit)) if own == unit => {}
         _ => return Default::default(),
     }
-    let note = format!(
-        "The column '{name}' counts {} from 1970: counted from the first time, {shown}.",
-        field.unit.as_deref().unwrap_or_default()
+    let note = msg!(
+        "The column '{}' counts {} from 1970: counted from the first time, {}.",
+        name,
+        Message::name(field.unit.as_deref().unwrap_or_default()),
+        shown
     );
     (Clock::from_1970(first).unwrap_or_default(), Some(note))
 }
 
 /// What is said of rows that repeat the one before.
-fn said_of_repeated(count: usize) -> Option<String> {
-    (count > 0).then(|| {
-        let rows = if count == 1 {
-            "row repeats"
-        } else {
-            "rows repeat"
-        };
-        format!("{count} {rows} the one before, time and values: each is read once.")
-    })
+fn said_of_repeated(count: usize) -> Option<Message> {
+    match count {
+        0 => None,
+        1 => Some(msg!(
+            "{} row repeats the one before, time and values: each is read once.",
+            count
+        )),
+        _ => Some(msg!(
+            "{} rows repeat the one before, time and values: each is read once.",
+            count
+        )),
+    }
 }
 
 type Failure = (usize, Option<String>, Problem);
@@ -273,7 +288,7 @@ impl RowReader<'_> {
         if fields.len() != width {
             let found = fields.len();
             let hint = if separator == ',' && found > width {
-                "; decimal commas need ; or tab between the columns"
+                "decimal commas need ; or tab between the columns"
             } else {
                 ""
             };
@@ -313,7 +328,7 @@ impl RowReader<'_> {
 }
 
 /// Makes the times of a table increase, and says what was done for it.
-fn in_order(header: &Header, table: &mut Rows) -> Result<Vec<String>, Failure> {
+fn in_order(header: &Header, table: &mut Rows) -> Result<Vec<Message>, Failure> {
     let Some(time) = header.columns.iter().position(|c| c.role == Role::Time) else {
         return Ok(Vec::new());
     };
@@ -447,10 +462,13 @@ pub(super) fn assemble(
     })
 }
 
-fn ignored(name: &str, kind: Kind) -> String {
-    let used = match kind {
-        Kind::Drive => "a drive has t, u, x1, v1, x2, v2",
-        Kind::Process => "a process has t, u, y",
-    };
-    format!("The column '{name}' is not used: {used}.")
+fn ignored(name: &str, kind: Kind) -> Message {
+    let name = Message::name(name);
+    match kind {
+        Kind::Drive => msg!(
+            "The column '{}' is not used: a drive has t, u, x1, v1, x2, v2.",
+            name
+        ),
+        Kind::Process => msg!("The column '{}' is not used: a process has t, u, y.", name),
+    }
 }

@@ -2,10 +2,11 @@
 
 use super::unit::ACCEPTED;
 use crate::count::counted;
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Why a file cannot be imported. Shown as one line: file, line, column, what was expected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: {problem}{}", place(*.line, .column.as_deref()), advised(.advice.as_deref()))]
 pub struct ImportError {
     /// Name of the file.
     pub file: Box<str>,
@@ -18,6 +19,27 @@ pub struct ImportError {
     /// Options of the command line with which the file is read, as far as its columns go.
     pub advice: Option<Box<str>>,
 }
+
+impl ImportError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        let file = Message::name(&*self.file);
+        let mut what = self.problem.message();
+        if let Some(advice) = self.advice.as_deref() {
+            what = msg!("{}; to read it: {}", what, Message::name(advice));
+        }
+        match (self.line, self.column.as_deref().map(Message::name)) {
+            (Some(line), Some(column)) => {
+                msg!("{}, line {}, column {}: {}", file, line, column, what)
+            }
+            (Some(line), None) => msg!("{}, line {}: {}", file, line, what),
+            (None, Some(column)) => msg!("{}, column {}: {}", file, column, what),
+            (None, None) => msg!("{}: {}", file, what),
+        }
+    }
+}
+
+says!(ImportError);
 
 impl ImportError {
     /// An error at this place, without advice.
@@ -35,16 +57,6 @@ impl ImportError {
             advice: None,
         }
     }
-}
-
-fn advised(advice: Option<&str>) -> String {
-    advice.map_or_else(String::new, |advice| format!("; to read it: {advice}"))
-}
-
-fn place(line: Option<usize>, column: Option<&str>) -> String {
-    let line = line.map_or_else(String::new, |line| format!(", line {line}"));
-    let column = column.map_or_else(String::new, |column| format!(", column {column}"));
-    line + &column
 }
 
 impl Problem {
@@ -73,108 +85,261 @@ impl Problem {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of each says it")]
 pub enum Problem {
-    #[error(
-        "the file is empty; expected a header such as t [s],u [N m],x1 [rad],v1 [rad/s] and rows of numbers"
-    )]
     Empty,
-    #[error("the file is not text in UTF-8 here; save it as CSV in UTF-8")]
     NotText,
-    #[error(
-        "'{found}' is not a header; the first line must name the columns with units, such as t [s],u [N m],x1 [rad],v1 [rad/s] or t [s],u [1],y [1]"
-    )]
-    NoHeader { found: String },
-    #[error(
-        "no unit; write it in brackets after the name, such as {name} [{example}]; accepted: {ACCEPTED}"
-    )]
-    NoUnit { name: String, example: &'static str },
-    #[error("the unit '{unit}' does not fit; expected {expected}")]
-    WrongUnit { unit: String, expected: String },
-    #[error(
-        "counts need their resolution, such as {name} [counts, 4096/rev] or {name} [counts, 0.001 mm]"
-    )]
-    BareCounts { name: String },
-    #[error("no column '{wanted}'; {hint}")]
+    NoHeader {
+        found: String,
+    },
+    NoUnit {
+        name: String,
+        example: &'static str,
+    },
+    WrongUnit {
+        unit: String,
+        expected: Box<Message>,
+    },
+    BareCounts {
+        name: String,
+    },
     NoColumn {
         wanted: &'static str,
         hint: &'static str,
     },
-    #[error("no column '{wanted}', and it is not clear which is meant: {found}")]
-    Unclear { wanted: &'static str, found: String },
-    #[error(
-        "the column '{name}' has dates or times of day that are not understood, such as '{text}'; expected 2025-01-31T09:27:03.5, 31.01.2025 09:27:03 or 09:27:03.5, or a number of seconds: t [s]"
-    )]
-    Date { name: String, text: String },
-    #[error("no column '{wanted}' to map; the file has {found}")]
-    NoSuchColumn { wanted: String, found: String },
-    #[error(
-        "a torque constant by {given} does not fit an input in {unit}; it makes torque of a current in A, a voltage in V or a command in %, PWM, counts or 1"
-    )]
-    NeedlessTorqueConstant { unit: String, given: &'static str },
-    #[error(
-        "a file of MATLAB does not say which variable is what; map them, such as t=time [s], u=current [A], x1=angle [rad]; it has {found}"
-    )]
-    NotMapped { found: String },
-    #[error("{found} values, but '{other}' has {expected}; all must have the same number")]
+    Unclear {
+        wanted: &'static str,
+        found: String,
+    },
+    Date {
+        name: String,
+        text: String,
+    },
+    NoSuchColumn {
+        wanted: String,
+        found: String,
+    },
+    NeedlessTorqueConstant {
+        unit: String,
+        given: &'static str,
+    },
+    NotMapped {
+        found: String,
+    },
     Lengths {
         found: usize,
         other: String,
         expected: usize,
     },
-    #[error("there are no numbers in the file; expected times, an input and an output")]
     NoNumbers,
-    #[error(
-        "the file is a scenario with a table [{table}], no measurement: `hysteron simulate` and `hysteron limit-cycle` take it, and the pages Explore and Backlash"
-    )]
-    Scenario { table: &'static str },
-    #[error("the file begins as JSON does, but is none: {what}")]
-    Json { what: String },
-    #[error(
-        "the HDF5 file is damaged, or has what is not read here: {what}; save it from MATLAB with -v7"
-    )]
-    Hdf5Damaged { what: String },
+    Scenario {
+        table: &'static str,
+    },
+    Json {
+        what: String,
+    },
+    Hdf5Damaged {
+        what: String,
+    },
     #[cfg(target_arch = "wasm32")]
-    #[error(
-        "a MATLAB v7.3 file (HDF5), which the page does not read; save it with -v7, or open it in the desktop app"
-    )]
     Hdf5OnPage,
-    #[error("what begins at byte {byte} of the MAT-file is damaged; expected {expected} in it")]
-    MatDamaged { byte: usize, expected: &'static str },
-    #[error("the file unpacks to more than {mebibytes} MiB; save only the variables needed")]
-    MatTooLarge { mebibytes: usize },
-    #[error("a MAT-file of level 4, as MATLAB's save -v4 writes it; save it with -v7")]
+    MatDamaged {
+        byte: usize,
+        expected: &'static str,
+    },
+    MatTooLarge {
+        mebibytes: usize,
+    },
     Mat4,
-    #[error("the column '{name}' stands there twice; each may come once")]
-    Twice { name: String },
-    #[error(
-        "rotational and translational units are mixed ({one} and {other}); use N m with rad, or N with m"
-    )]
-    Mixed { one: String, other: String },
-    #[error("{}, but the header has {expected}{hint}", counted(*found, "field"))]
+    Twice {
+        name: String,
+    },
+    Mixed {
+        one: String,
+        other: String,
+    },
     Ragged {
         found: usize,
         expected: usize,
         hint: &'static str,
     },
-    #[error("'{text}' is not a number; expected e.g. 0.25 or 1e-3")]
-    NotANumber { text: String },
-    #[error("'{text}' is not finite; remove the row or measure again")]
-    NotFinite { text: String },
-    #[error(
-        "'{text}' is no measurement: it is too large or too small to calculate with, by itself or beside the rest of its column; remove the row or measure again"
-    )]
-    Size { text: String },
-    #[error(
-        "time does not increase ({now} s after {before} s); rows must be in order of time, each time once"
-    )]
-    TimeOrder { before: String, now: String },
-    #[error(
-        "time does not increase: {time} s stands in two rows with different values; where the clock is too coarse for its rows, give the sampling period, which then counts instead"
-    )]
-    TimeTwice { time: String },
-    #[error(
-        "time begins anew here ({now} s after {before} s), as in another run; what a process did between two runs is not known: save each run in a file of its own"
-    )]
-    TimeBeginsAnew { before: String, now: String },
-    #[error("only {} of numbers; at least {expected} are needed to tell noise from signal", counted(*found, "row"))]
-    TooShort { found: usize, expected: usize },
+    NotANumber {
+        text: String,
+    },
+    NotFinite {
+        text: String,
+    },
+    Size {
+        text: String,
+    },
+    TimeOrder {
+        before: String,
+        now: String,
+    },
+    TimeTwice {
+        time: String,
+    },
+    TimeBeginsAnew {
+        before: String,
+        now: String,
+    },
+    TooShort {
+        found: usize,
+        expected: usize,
+    },
 }
+
+impl Problem {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Empty => {
+                "the file is empty; expected a header such as t [s],u [N m],x1 [rad],v1 [rad/s] and rows of \
+                 numbers"
+                    .into()
+            }
+            Self::NotText => "the file is not text in UTF-8 here; save it as CSV in UTF-8".into(),
+            Self::NoHeader { found } => msg!(
+                "'{}' is not a header; the first line must name the columns with units, such as t [s],u [N \
+                 m],x1 [rad],v1 [rad/s] or t [s],u [1],y [1]",
+                Message::name(found.clone())
+            ),
+            Self::NoUnit { name, example } => msg!(
+                "no unit; write it in brackets after the name, such as {} [{}]; accepted: {}",
+                Message::name(name.clone()),
+                example,
+                ACCEPTED
+            ),
+            Self::WrongUnit { unit, expected } => msg!(
+                "the unit '{}' does not fit; expected {}",
+                Message::name(unit.clone()),
+                &**expected
+            ),
+            Self::BareCounts { name } => msg!(
+                "counts need their resolution, such as {} [counts, 4096/rev] or {} [counts, 0.001 mm]",
+                Message::name(name.clone()),
+                Message::name(name.clone())
+            ),
+            Self::NoColumn { wanted, hint } => msg!("no column '{}'; {}", wanted, hint),
+            Self::Unclear { wanted, found } => msg!(
+                "no column '{}', and it is not clear which is meant: {}",
+                wanted,
+                Message::name(found.clone())
+            ),
+            Self::Date { name, text } => msg!(
+                "the column '{}' has dates or times of day that are not understood, such as '{}'; expected \
+                 2025-01-31T09:27:03.5, 31.01.2025 09:27:03 or 09:27:03.5, or a number of seconds: t [s]",
+                Message::name(name.clone()),
+                Message::name(text.clone())
+            ),
+            Self::NoSuchColumn { wanted, found } => msg!(
+                "no column '{}' to map; the file has {}",
+                Message::name(wanted.clone()),
+                Message::name(found.clone())
+            ),
+            Self::NeedlessTorqueConstant { unit, given } => msg!(
+                "a torque constant by {} does not fit an input in {}; it makes torque of a current in A, a \
+                 voltage in V or a command in %, PWM, counts or 1",
+                given,
+                Message::name(unit.clone())
+            ),
+            Self::NotMapped { found } => msg!(
+                "a file of MATLAB does not say which variable is what; map them, such as t=time [s], u=current \
+                 [A], x1=angle [rad]; it has {}",
+                Message::name(found.clone())
+            ),
+            Self::Lengths { found, other, expected } => msg!(
+                "{} values, but '{}' has {}; all must have the same number",
+                found,
+                Message::name(other.clone()),
+                expected
+            ),
+            Self::NoNumbers => {
+                "there are no numbers in the file; expected times, an input and an output"
+                    .into()
+            }
+            Self::Scenario { table } => msg!(
+                "the file is a scenario with a table [{}], no measurement: `hysteron simulate` and `hysteron \
+                 limit-cycle` take it, and the pages Explore and Backlash",
+                table
+            ),
+            Self::Json { what } => msg!(
+                "the file begins as JSON does, but is none: {}",
+                Message::name(what.clone())
+            ),
+            Self::Hdf5Damaged { what } => msg!(
+                "the HDF5 file is damaged, or has what is not read here: {}; save it from MATLAB with -v7",
+                Message::name(what.clone())
+            ),
+            #[cfg(target_arch = "wasm32")]
+            Self::Hdf5OnPage => {
+                "a MATLAB v7.3 file (HDF5), which the page does not read; save it with -v7, or open it in the \
+                 desktop app"
+                    .into()
+            }
+            Self::MatDamaged { byte, expected } => msg!(
+                "what begins at byte {} of the MAT-file is damaged; expected {} in it",
+                byte,
+                expected
+            ),
+            Self::MatTooLarge { mebibytes } => msg!(
+                "the file unpacks to more than {} MiB; save only the variables needed",
+                mebibytes
+            ),
+            Self::Mat4 => {
+                "a MAT-file of level 4, as MATLAB's save -v4 writes it; save it with -v7"
+                    .into()
+            }
+            Self::Twice { name } => msg!(
+                "the column '{}' stands there twice; each may come once",
+                Message::name(name.clone())
+            ),
+            Self::Mixed { one, other } => msg!(
+                "rotational and translational units are mixed ({} and {}); use N m with rad, or N with m",
+                Message::name(one.clone()),
+                Message::name(other.clone())
+            ),
+            Self::Ragged { found, expected, hint } => {
+                let fields = counted(*found, "field");
+                match *hint {
+                    "" => msg!("{}, but the header has {}", fields, expected),
+                    hint => msg!("{}, but the header has {}; {}", fields, expected, hint),
+                }
+            },
+            Self::NotANumber { text } => msg!(
+                "'{}' is not a number; expected e.g. 0.25 or 1e-3",
+                Message::name(text.clone())
+            ),
+            Self::NotFinite { text } => msg!(
+                "'{}' is not finite; remove the row or measure again",
+                Message::name(text.clone())
+            ),
+            Self::Size { text } => msg!(
+                "'{}' is no measurement: it is too large or too small to calculate with, by itself or beside \
+                 the rest of its column; remove the row or measure again",
+                Message::name(text.clone())
+            ),
+            Self::TimeOrder { before, now } => msg!(
+                "time does not increase ({} s after {} s); rows must be in order of time, each time once",
+                Message::name(now.clone()),
+                Message::name(before.clone())
+            ),
+            Self::TimeTwice { time } => msg!(
+                "time does not increase: {} s stands in two rows with different values; where the clock is too \
+                 coarse for its rows, give the sampling period, which then counts instead",
+                Message::name(time.clone())
+            ),
+            Self::TimeBeginsAnew { before, now } => msg!(
+                "time begins anew here ({} s after {} s), as in another run; what a process did between two \
+                 runs is not known: save each run in a file of its own",
+                Message::name(now.clone()),
+                Message::name(before.clone())
+            ),
+            Self::TooShort { found, expected } => msg!(
+                "only {} of numbers; at least {} are needed to tell noise from signal",
+                counted(*found, "row"),
+                expected
+            ),
+        }
+    }
+}
+
+says!(Problem);

@@ -6,6 +6,7 @@ use super::header::{Field, Role, listed, shorten};
 use super::mapping::ImportOptions;
 use super::resembling::{RESEMBLING, Resembling, is_wanted};
 use super::{Kind, Quantity};
+use crate::message::Message;
 
 /// What a measurement still needs of its columns: time, input, and what moves or comes out.
 fn lacking(fields: &[Field], options: &ImportOptions) -> Vec<Role> {
@@ -34,7 +35,7 @@ pub(super) fn fill(
     fields: &mut [Field],
     options: &ImportOptions,
     look: impl FnOnce() -> Option<Vec<FoundColumn>>,
-) -> Result<Vec<String>, Problem> {
+) -> Result<Vec<Message>, Problem> {
     let lacking = lacking(fields, options);
     let Some(columns) = (!lacking.is_empty()).then(look).flatten() else {
         return Ok(Vec::new());
@@ -108,7 +109,7 @@ fn unclear(of: &[&Candidates], columns: &[FoundColumn]) -> Problem {
 }
 
 /// Gives columns their roles, and says which.
-fn give(fields: &mut [Field], columns: &[FoundColumn], found: &[Candidates]) -> Vec<String> {
+fn give(fields: &mut [Field], columns: &[FoundColumn], found: &[Candidates]) -> Vec<Message> {
     let mut notes = Vec::new();
     for (resembling, candidates) in found {
         for i in candidates {
@@ -118,7 +119,8 @@ fn give(fields: &mut [Field], columns: &[FoundColumn], found: &[Candidates]) -> 
             }
             field.role = Some(role);
             let name = shorten(&field.name);
-            notes.push(format!("The column '{name}' is taken for {}.", said(role)));
+            let words = format!("The column '{{}}' is taken for {}.", said(role));
+            notes.push(Message::Words(words.into(), vec![Message::name(name)]));
         }
     }
     notes

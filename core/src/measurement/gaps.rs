@@ -1,6 +1,8 @@
 //! Gaps in the time of a record, where rows are missing.
 
 use super::Kind;
+use crate::message::Message;
+use crate::msg;
 
 /// A step in time this many times the usual one is a gap, if there is no more than one in so many.
 const GAP: f64 = 1.6;
@@ -31,20 +33,25 @@ pub fn gaps(time: &[f64]) -> Vec<usize> {
 }
 
 /// What is to be said of the gaps of a process, whose model runs on over them.
-pub(super) fn said(kind: Kind, time: &[f64]) -> Option<String> {
+pub(super) fn said(kind: Kind, time: &[f64]) -> Option<Message> {
     let found = gaps(time);
     let step = |k: &usize| time[*k] - time[k - 1];
     let longest = found.iter().map(step).max_by(f64::total_cmp)?;
     let usual = (time.last()? - time.first()?) / time.len() as f64;
     (kind == Kind::Process && longest > SAID * usual).then(|| {
-        let count = match found.len() {
-            1 => "1 gap".to_owned(),
-            many => format!("{many} gaps"),
-        };
         let longest = format!("{longest:.3e}").parse().unwrap_or(longest);
-        format!(
-            "The time has {count}, the longest of {longest} s: the input counts as held over them."
-        )
+        match found.len() {
+            1 => msg!(
+                "The time has {} gap, the longest of {} s: the input counts as held over them.",
+                1,
+                longest
+            ),
+            many => msg!(
+                "The time has {} gaps, the longest of {} s: the input counts as held over them.",
+                many,
+                longest
+            ),
+        }
     })
 }
 

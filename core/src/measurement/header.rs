@@ -6,6 +6,8 @@ use super::mapping::ImportOptions;
 use super::period::Period;
 use super::unit::{self, ACCEPTED, Measures};
 use super::{Kind, Quantity};
+use crate::message::Message;
+use crate::msg;
 
 /// A column before it is understood.
 #[derive(Clone, Debug)]
@@ -62,7 +64,7 @@ pub(super) struct Header {
     pub columns: Vec<Column>,
     pub ignored: Vec<String>,
     /// What had to be assumed, for the user.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
     pub width: usize,
     /// The time from sample to sample, where no column has the times.
     pub period: Option<Period>,
@@ -245,12 +247,20 @@ impl Assumed {
     }
 
     /// What was assumed, for the user.
-    fn notes(&self) -> Vec<String> {
+    fn notes(&self) -> Vec<Message> {
         let clock = self.clock.as_ref();
-        let clock = clock.map(|clock| format!("No unit is given for {clock}: taken as seconds."));
+        let clock = clock.map(|clock| {
+            msg!(
+                "No unit is given for {}: taken as seconds.",
+                Message::name(clock)
+            )
+        });
         let plain = (!self.plain.is_empty()).then(|| {
             let plain = self.plain.join(", ");
-            format!("No unit is given for {plain}: taken as plain numbers.")
+            msg!(
+                "No unit is given for {}: taken as plain numbers.",
+                Message::name(plain)
+            )
         });
         clock.into_iter().chain(plain).collect()
     }
@@ -269,7 +279,8 @@ fn or_process(problem: Problem, role: Role, options: &ImportOptions) -> Problem 
                 && role != Role::Time
                 && unit::parse_input(&unit).is_none() =>
         {
-            let expected = format!("{expected}; the output of a process is y, in any unit");
+            let expected = msg!("{}; the output of a process is y, in any unit", *expected);
+            let expected = Box::new(expected);
             Problem::WrongUnit { unit, expected }
         }
         other => other,
@@ -302,12 +313,13 @@ fn convert(
     unit: &str,
 ) -> Result<(Measures, f64, String), Problem> {
     use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
-    let expected: (&[Measures], &str) = match (role, kind) {
+    let expected: (&[Measures], &'static str) = match (role, kind) {
         (Role::Time, _) => (&[Time], "a time: s, ms, us, min"),
         (_, Kind::Process) => return Ok((Measures::Other, 1.0, unit.to_owned())),
         (Role::Measured(Quantity::Input), _) => (
             &[Torque, Force],
-            "a torque or force: N m, mN m, N, kN, the current or voltage of the motor: A, V, or a command: %, PWM, counts, 1",
+            "a torque or force: N m, mN m, N, kN, the current or voltage of the motor: A, V, or a command: %, PWM, \
+             counts, 1",
         ),
         (Role::Measured(Quantity::Position | Quantity::LoadPosition), _) => (
             &[Angle, Length],
@@ -340,11 +352,11 @@ fn convert(
         }
         Some(_) => Err(Problem::WrongUnit {
             unit: shorten(unit),
-            expected: expected.1.to_owned(),
+            expected: Box::new(expected.1.into()),
         }),
         None => Err(Problem::WrongUnit {
             unit: shorten(unit),
-            expected: format!("{}; accepted: {ACCEPTED}", expected.1),
+            expected: Box::new(msg!("{}; accepted: {}", expected.1, ACCEPTED)),
         }),
     }
 }
@@ -379,12 +391,12 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
     column.measures = gives;
     gives.si().clone_into(&mut column.unit);
     if options.torque_constant.is_none() {
-        header.notes.push(format!(
-            "The torque constant is not known: 1 {gives}/{per} is taken. Inertias, frictions and loads below \
-             therefore stand in multiples of it: multiply them by the true one. Times, gaps and which effects \
-             are found do not depend on it.",
-            gives = gives.si(),
-            per = before.si(),
+        header.notes.push(msg!(
+            "The torque constant is not known: 1 {}/{} is taken. Inertias, frictions and loads below therefore stand \
+             in multiples of it: multiply them by the true one. Times, gaps and which effects are found do not \
+             depend on it.",
+            gives.si(),
+            before.si()
         ));
     }
     let note = match before {
@@ -397,7 +409,7 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
         }
         _ => return Ok(()),
     };
-    header.notes.push(note.to_owned());
+    header.notes.push(note.into());
     Ok(())
 }
 

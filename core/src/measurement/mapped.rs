@@ -5,6 +5,8 @@ use super::column::{Role, shorten};
 use super::error::Problem;
 use super::header::{Field, listed};
 use super::mapping::Mapping;
+use crate::message::Message;
+use crate::msg;
 
 /// What a mapping calls a column that has no name of its own, before its place from 1.
 const PLACE: &str = "column ";
@@ -39,7 +41,7 @@ fn addressed(fields: &[Field], source: &str) -> Option<usize> {
 
 /// Gives the columns that a mapping names their meaning; what it takes, no other column can be. Says what is used
 /// besides by its name where the mapping names what was measured.
-pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<Vec<String>, Problem> {
+pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<Vec<Message>, Problem> {
     for field in fields.iter_mut() {
         if mapping.entries.iter().any(|e| field.role == Some(e.role)) {
             field.role = None;
@@ -78,9 +80,9 @@ pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<Vec<String>
         let role = field
             .role
             .filter(|role| output(*role) && !mapping.speaks_of(*role))?;
-        Some(format!(
+        Some(msg!(
             "The column '{}' is used as well, by its name: {}=- in the mapping leaves it out.",
-            shorten(&field.name),
+            Message::name(shorten(&field.name)),
             role.name()
         ))
     });

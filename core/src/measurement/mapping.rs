@@ -6,6 +6,8 @@ use super::column::{Role, shorten};
 use super::period::Period;
 use super::split::split_header;
 use super::unit::{self, Measures};
+use crate::message::{Message, says};
+use crate::msg;
 
 /// How to read a file; the default asks the file itself.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,34 +86,53 @@ impl TorqueConstant {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MappingError {
     /// A part without `=`, or with nothing on one side.
-    #[error("'{part}' is not a mapping; expected what=column [unit], such as x1=enc [counts:4096]")]
     NotAMapping {
         /// What was found.
         part: String,
     },
     /// Left of `=` stands no known quantity.
-    #[error(
-        "'{name}' is none of t, u, x1, v1, x2, v2 and y, which say what the column behind the = is"
-    )]
     UnknownQuantity {
         /// What was found.
         name: String,
     },
     /// A quantity or a column is mapped twice.
-    #[error("'{name}' stands in the mapping twice; each may come once")]
     Twice {
         /// Which.
         name: String,
     },
     /// Not a number with a unit of torque or force by current, voltage or command.
-    #[error(
-        "'{text}' is not a torque constant; expected a number but zero and its unit, such as 0.05 N m/A, 2 N/A or 0.1 N m/V"
-    )]
     NotATorqueConstant {
         /// What was found.
         text: String,
     },
 }
+
+impl MappingError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::NotAMapping { part } => msg!(
+                "'{}' is not a mapping; expected what=column [unit], such as x1=enc [counts:4096]",
+                Message::name(part.clone())
+            ),
+            Self::UnknownQuantity { name } => msg!(
+                "'{}' is none of t, u, x1, v1, x2, v2 and y, which say what the column behind the = is",
+                Message::name(name.clone())
+            ),
+            Self::Twice { name } => msg!(
+                "'{}' stands in the mapping twice; each may come once",
+                Message::name(name.clone())
+            ),
+            Self::NotATorqueConstant { text } => msg!(
+                "'{}' is not a torque constant; expected a number but zero and its unit, such as 0.05 N m/A, 2 N/A \
+                 or 0.1 N m/V",
+                Message::name(text.clone())
+            ),
+        }
+    }
+}
+
+says!(MappingError);
 
 impl FromStr for Mapping {
     type Err = MappingError;

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use super::column::shorten;
 use super::unit::{Measures, parse};
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Shortest and longest period, s: beyond these the times of a long record are no numbers to calculate with.
 const LEAST: f64 = 1e-12;
@@ -18,13 +20,22 @@ pub struct Period {
 
 /// Not a number with a unit of time or frequency.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "'{text}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz"
-)]
 pub struct PeriodError {
     /// What was found.
     pub text: String,
 }
+
+impl PeriodError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        msg!(
+            "'{}' is not a sampling period; expected a number and its unit, such as 4s, 0.5ms, 2min or 100Hz",
+            Message::name(self.text.clone())
+        )
+    }
+}
+
+says!(PeriodError);
 
 impl Period {
     /// A period of so many seconds, if samples can have it.

@@ -1,6 +1,8 @@
 //! Does the measured velocity belong to the measured position?
 
 use super::{Channel, Quantity};
+use crate::message::{Message, fixed};
+use crate::msg;
 
 /// Samples of the stretches over which the two are compared, and stretches at least.
 const STRETCHES: [usize; 5] = [2, 8, 32, 128, 512];
@@ -22,17 +24,19 @@ const MISTAKEN: [(f64, &str); 4] = [
 const NEAR: f64 = 0.02;
 
 /// A sentence where the velocity is another multiple of the rate of the position than 1.
-pub(super) fn contradiction(time: &[f64], outputs: &[Channel]) -> Option<String> {
+pub(super) fn contradiction(time: &[f64], outputs: &[Channel]) -> Option<Message> {
     let of = |quantity| outputs.iter().find(|c| c.quantity == quantity);
     let (x, v) = (of(Quantity::Position)?, of(Quantity::Velocity)?);
     let compared = STRETCHES.iter().filter(|m| time.len() / **m >= LEAST);
     let compared = compared.filter_map(|m| Likeness::of(time, &x.values, &v.values, *m));
     let best = compared.max_by(|a, b| a.told().total_cmp(&b.told()))?;
     let ratio = best.ratio().filter(|_| best.told() > TOLD)?;
-    let (x, v) = (&x.name, &v.name);
+    let [x, v] = [x, v].map(|of| Message::name(&of.name));
     if ratio < 0.0 && (ratio + 1.0).abs() < TOLERANCE {
-        return Some(format!(
-            "{v} runs against {x}: flip the sign of one of them."
+        return Some(msg!(
+            "{} runs against {}: flip the sign of one of them.",
+            v,
+            x
         ));
     }
     let mistaken = |size: f64| {
@@ -40,14 +44,28 @@ pub(super) fn contradiction(time: &[f64], outputs: &[Channel]) -> Option<String>
         MISTAKEN.iter().find(near).map(|(_, unit)| unit)
     };
     let hint = match (mistaken(ratio.abs()), mistaken(1.0 / ratio.abs())) {
-        (Some(unit), _) => format!(", {v} looks like {unit}"),
-        (_, Some(unit)) => format!(", {x} looks like {unit}"),
-        _ => String::new(),
+        (Some(unit), _) => Some((&v, unit)),
+        (_, Some(unit)) => Some((&x, unit)),
+        _ => None,
     };
     let digits = (2.0 - libm::floor(libm::log10(ratio.abs()))).clamp(0.0, 6.0) as usize;
-    Some(format!(
-        "{v} is {ratio:.digits$} times the rate at which {x} moves: check their units and that of the time{hint}."
-    ))
+    let ratio = fixed(ratio, digits);
+    Some(match hint {
+        Some((of, unit)) => msg!(
+            "{} is {} times the rate at which {} moves: check their units and that of the time, {} looks like {}.",
+            &v,
+            ratio,
+            &x,
+            of,
+            unit
+        ),
+        None => msg!(
+            "{} is {} times the rate at which {} moves: check their units and that of the time.",
+            v,
+            ratio,
+            x
+        ),
+    })
 }
 
 /// Sums of squares and products over stretches: of the way of the position, and of the velocity.
@@ -97,7 +115,7 @@ mod tests {
     const STEP: f64 = 1e-3;
 
     /// Position in steps of an encoder and velocity with noise, `factor` times too fast.
-    fn said(factor: f64, noise: f64) -> Option<String> {
+    fn said(factor: f64, noise: f64) -> Option<Message> {
         let time: Vec<f64> = (0..4000).map(|k| STEP * f64::from(k)).collect();
         let channel = |quantity, name: &str, values: Vec<f64>| Channel {
             quantity,
@@ -135,7 +153,7 @@ mod tests {
             (-1.0, "v1 runs against x1"),
         ] {
             let said = said(factor, 0.1).expect("a sentence");
-            assert!(said.contains(part), "{said}");
+            assert!(said.to_string().contains(part), "{said}");
         }
     }
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::column::{Role, role};
 use super::kind::{Kind, Motion, Quantity};
+use crate::message::Message;
 
 /// One recorded column in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +62,7 @@ pub struct Measurement {
     /// Columns kept for reference only (load position and velocity).
     pub reference: Vec<Channel>,
     /// Things worth telling the user that did not stop the import.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
 }
 
 /// Fewest samples that a measurement can have; below this no noise can be told from signal.

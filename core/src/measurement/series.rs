@@ -17,6 +17,8 @@ use super::resembling::is_period;
 use super::size::wrong_size;
 use super::times;
 use super::{Kind, Measurement};
+use crate::message::Message;
+use crate::msg;
 
 /// One series of numbers with the name by which it is addressed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -125,7 +127,7 @@ pub(super) struct Table {
 
 impl Table {
     /// The fields by their names, and what is to be said of these.
-    fn fields(&self) -> (Vec<Field>, Option<String>) {
+    fn fields(&self) -> (Vec<Field>, Option<Message>) {
         let field = |series: &Series| {
             let unit = series.unit.clone();
             let field = Field::named(series.name.clone(), unit);
@@ -197,17 +199,20 @@ impl Table {
             };
             options.mapping = record_mapping(record).parse().unwrap_or_default();
             if self.records().nth(1).is_some() {
-                notes.push(format!(
-                    "The file holds {}: '{record}' was read. A mapping reads another one.",
-                    listed(self.records())
+                notes.push(msg!(
+                    "The file holds {}: '{}' was read. A mapping reads another one.",
+                    Message::name(listed(self.records())),
+                    Message::name(record)
                 ));
             }
         }
         notes.extend(map(&mut fields, &options.mapping).map_err(whole)?);
         notes.extend(note.filter(|_| options.mapping.is_empty()));
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
-            notes.push(format!(
-                "The column '{name}' is taken for the sampling period, {period}."
+            notes.push(msg!(
+                "The column '{}' is taken for the sampling period, {} s.",
+                Message::name(name),
+                period.seconds()
             ));
             options.period = Some(period);
         }
@@ -268,14 +273,15 @@ pub(super) fn last_name(name: &str) -> &str {
 }
 
 /// Counts times from the first of them that are counted from 1970, or are dates, and says so.
-fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String> {
+fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<Message> {
     let time = fields.iter().position(|f| f.role == Some(Role::Time))?;
     let (field, series) = (fields.get_mut(time)?, series.get_mut(time)?);
     let name = shorten(&field.name);
     if series.dates {
         field.unit = Some("s".to_owned());
-        return Some(format!(
-            "The column '{name}' has dates or times of day: counted in seconds from the first."
+        return Some(msg!(
+            "The column '{}' has dates or times of day: counted in seconds from the first.",
+            Message::name(name)
         ));
     }
     let first = *series.values.first()?;
@@ -284,8 +290,10 @@ fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String
         return None;
     }
     series.values.iter_mut().for_each(|value| *value -= first);
-    Some(format!(
-        "The column '{name}' counts {unit} from 1970: counted from the first time."
+    Some(msg!(
+        "The column '{}' counts {} from 1970: counted from the first time.",
+        Message::name(name),
+        unit
     ))
 }
 
@@ -293,7 +301,7 @@ fn from_first_time(fields: &mut [Field], series: &mut [Series]) -> Option<String
 fn columns(
     header: &Header,
     mut series: Vec<Series>,
-) -> Result<(Vec<Vec<f64>>, Vec<String>), Located> {
+) -> Result<(Vec<Vec<f64>>, Vec<Message>), Located> {
     let mut all: Vec<Vec<f64>> = Vec::new();
     let mut in_order = None;
     for column in &header.columns {

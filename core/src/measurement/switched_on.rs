@@ -1,6 +1,7 @@
 //! A step from rest of which the row before the step is not in the file: the input is the same in all rows.
 
 use super::{Channel, Quantity};
+use crate::message::Message;
 
 /// Share of the largest velocity, and of the average one by the position, that a body still at rest has at most.
 const SLOW: f64 = 0.2;
@@ -19,7 +20,7 @@ pub(super) fn from_rest(
     input: &mut Channel,
     outputs: &mut [Channel],
     reference: &mut [Channel],
-) -> Option<String> {
+) -> Option<Message> {
     let u = *input.values.first()?;
     let constant = u != 0.0 && input.values.iter().all(|value| *value == u);
     if !constant || !outputs.iter().all(|output| begins_at_rest(time, output)) {
@@ -39,7 +40,7 @@ pub(super) fn from_rest(
     }
     let said = "The input is constant: taken as switched on with the first row, with everything at rest before; \
                 a row without input is put before it.";
-    Some(said.to_owned())
+    Some(said.into())
 }
 
 /// Whether what was measured is at rest at first, as far as it can be seen, and moves later.

@@ -9,6 +9,7 @@ use super::header::{Field, has_number, name_and_unit};
 use super::resembling::is_of_process;
 use super::split::{BLANKS, split_header, split_row};
 use super::unit::parse_input;
+use crate::message::Message;
 
 /// A problem and its line.
 pub(super) type Located = (Option<usize>, Problem);
@@ -28,7 +29,7 @@ pub(super) struct Text<Rows> {
     pub line: usize,
     pub dialect: Dialect,
     /// What is to be said of the names.
-    pub note: Option<String>,
+    pub note: Option<Message>,
     /// Rows with their lines.
     pub rows: Rows,
 }

@@ -2,6 +2,8 @@
 
 use super::Kind;
 use super::error::Problem;
+use crate::message::Message;
+use crate::msg;
 
 /// Fewest rows of a run.
 const RUN: usize = 10;
@@ -21,7 +23,7 @@ pub(super) struct Mended {
     /// Rows that are left out, in order.
     pub out: Vec<usize>,
     /// What is to be said of it.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
 }
 
 /// Makes times increase: rows at the begin of a run whose time the next one has again are left out, since the clock had
@@ -91,20 +93,21 @@ fn out_of_order(before: f64, now: f64) -> Problem {
     Problem::TimeOrder { before, now }
 }
 
-fn said(out: usize, runs: usize) -> Vec<String> {
+fn said(out: usize, runs: usize) -> Vec<Message> {
     let mut notes = Vec::new();
     if out == 1 {
-        notes.push(format!(
-            "{out} row has the time of the row below it and is left out: the clock had not started."
+        notes.push(msg!(
+            "{} row has the time of the row below it and is left out: the clock had not started.",
+            out
         ));
     } else if out > 1 {
-        notes.push(format!(
-            "{out} rows have the time of the row below them and are left out: the clock had not started."
-        ));
+        notes.push(msg!(
+            "{} rows have the time of the row below them and are left out: the clock had not started.", out));
     }
     if runs > 1 {
-        notes.push(format!(
-            "The time begins anew: read as {runs} runs one after another, with a gap between them."
+        notes.push(msg!(
+            "The time begins anew: read as {} runs one after another, with a gap between them.",
+            runs
         ));
     }
     notes
@@ -138,7 +141,11 @@ mod tests {
         let times = [vec![0.0, 0.0], run(60)].concat();
         let (mended, said) = mended(&times, Kind::Process).unwrap();
         assert_eq!((mended, said.out.as_slice()), (run(60), &[0, 1][..]));
-        assert!(said.notes[0].starts_with("2 rows have the time"));
+        assert!(
+            said.notes[0]
+                .to_string()
+                .starts_with("2 rows have the time")
+        );
         let mut values: Vec<f64> = (0..62).map(f64::from).collect();
         leave_out(&mut values, &said.out);
         assert_eq!((values.len(), values[0]), (60, 2.0));
@@ -151,7 +158,11 @@ mod tests {
         assert_eq!((all.len(), said.out.as_slice()), (50, &[20][..]));
         assert!(all.windows(2).all(|pair| pair[1] > pair[0]));
         assert_eq!((all[19], all[20], all[21]), (9.5, 14.5, 15.0));
-        assert!(said.notes[1].contains("2 runs"), "{:?}", said.notes);
+        assert!(
+            said.notes[1].to_string().contains("2 runs"),
+            "{:?}",
+            said.notes
+        );
         let (row, problem) = mended(&times, Kind::Process).unwrap_err();
         assert_eq!(row, 20);
         assert!(

@@ -1,5 +1,8 @@
 //! What can be wrong with a mystery.
 
+use crate::message::{Message, says};
+use crate::msg;
+
 /// Fewest characters of a word.
 pub const SHORTEST_WORD: usize = 6;
 
@@ -7,25 +10,19 @@ pub const SHORTEST_WORD: usize = 6;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MysteryError {
     /// A word that anybody could guess.
-    #[error("The password has {found} letters: it needs at least {SHORTEST_WORD}.")]
     ShortWord {
         /// Its length in characters.
         found: usize,
     },
     /// The word is another one, or the seal was changed.
-    #[error("This password does not open the seal.")]
     WrongWord,
     /// A seal that is not one.
-    #[error("The sealed truth of this file is damaged.")]
     BadSeal,
     /// A text that stands for no mystery.
-    #[error("This link holds no mystery: {0}.")]
     BadLink(&'static str),
     /// An effect that the bench cannot hide.
-    #[error("The bench cannot hide {0}.")]
     UnknownEffect(String),
     /// A strength that the bench cannot have.
-    #[error("{effect}: {symbol} must be from {least} to {most} {unit}.")]
     Strength {
         /// Name of the effect.
         effect: &'static str,
@@ -39,12 +36,49 @@ pub enum MysteryError {
         unit: &'static str,
     },
     /// Effects that the bench cannot have together.
-    #[error("{0} and {1} cannot be hidden together.")]
     Together(&'static str, &'static str),
     /// More than a diagnosis can be asked to find.
-    #[error("At most {0} effects can be hidden.")]
     TooMany(usize),
     /// The cipher refused, which it does for texts beyond all size only.
-    #[error("The truth cannot be sealed.")]
     Cipher,
 }
+
+impl MysteryError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::ShortWord { found } => msg!(
+                "The password has {} letters: it needs at least {}.",
+                found,
+                SHORTEST_WORD
+            ),
+            Self::WrongWord => "This password does not open the seal.".into(),
+            Self::BadSeal => "The sealed truth of this file is damaged.".into(),
+            Self::BadLink(given) => msg!("This link holds no mystery: {}.", given),
+            Self::UnknownEffect(given) => {
+                msg!("The bench cannot hide {}.", Message::name(given.clone()))
+            }
+            Self::Strength {
+                effect,
+                symbol,
+                least,
+                most,
+                unit,
+            } => msg!(
+                "{}: {} must be from {} to {} {}.",
+                effect,
+                symbol,
+                least,
+                most,
+                unit
+            ),
+            Self::Together(first, second) => {
+                msg!("{} and {} cannot be hidden together.", first, second)
+            }
+            Self::TooMany(given) => msg!("At most {} effects can be hidden.", given),
+            Self::Cipher => "The truth cannot be sealed.".into(),
+        }
+    }
+}
+
+says!(MysteryError);

@@ -13,6 +13,8 @@ use super::plant::Motion;
 use super::relay::Position;
 use super::run::{OnOffLoop, Switch};
 use super::stability::multiplier;
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::plant::MAX_ORDER;
 use crate::simulate::{SimulateError, State};
 
@@ -44,7 +46,7 @@ pub struct Settled {
     /// The position in which the controller stays for ever, where it does.
     pub rests: Option<Position>,
     /// The answer in a sentence.
-    pub text: String,
+    pub text: Message,
 }
 
 /// Switches after which a pattern is looked for, each time four times as many.
@@ -129,26 +131,33 @@ fn rest(course: &Course<'_>) -> Settled {
         simulated: None,
         exact: None,
         rests: Some(course.position),
-        text: format!("The controller stays {last} and no longer switches: no oscillation."),
+        text: msg!(
+            "The controller stays {} and no longer switches: no oscillation.",
+            last
+        ),
     }
 }
 
-fn said(simulated: Option<&OnOffCycle>, exact: Option<&OnOffCycle>) -> String {
+fn said(simulated: Option<&OnOffCycle>, exact: Option<&OnOffCycle>) -> Message {
     let Some(cycle) = exact.or(simulated) else {
-        return "It oscillates in a pattern of many cycles, or in none that repeats.".to_owned();
+        return "It oscillates in a pattern of many cycles, or in none that repeats.".into();
     };
     let [low, high] = cycle.range;
     let switches = cycle.positions.len();
     let stable = match cycle.stable {
-        Some(true) => " It is stable.",
-        Some(false) => " It is not stable.",
-        None if exact.is_some() => " A small change of the start leads to another one beside it.",
+        Some(true) => "It is stable.",
+        Some(false) => "It is not stable.",
+        None if exact.is_some() => "A small change of the start leads to another one beside it.",
         None => "",
     };
-    format!(
-        "It oscillates between {low:.4} and {high:.4} with a period of {:.4} s and {switches} switches in each.{stable}",
-        cycle.period
+    msg!(
+        "It oscillates between {} and {} with a period of {} s and {} switches in each.",
+        fixed(low, 4),
+        fixed(high, 4),
+        fixed(cycle.period, 4),
+        switches
     )
+    .and(stable)
 }
 
 /// The last whole pattern of a run, with the switch at its begin before it.

@@ -3,6 +3,9 @@
 //! A plant is a [`TransferFunction`], a [`StateSpace`] or a [`ZeroPoleGain`], each of which converts
 //! into the others, or a [`Multivariable`] with as many inputs as outputs.
 
+use crate::message::{Message, says};
+use crate::msg;
+
 mod conversion;
 mod parse;
 mod presets;
@@ -26,20 +29,12 @@ pub const MAX_ORDER: usize = 12;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// A coefficient that is no number.
-    #[error("a coefficient is not finite: every coefficient must be a number")]
     NotFinite,
     /// Nothing between input and output.
-    #[error("the numerator is empty or zero: it must have a coefficient that is not 0")]
     NoNumerator,
     /// Order out of range.
-    #[error(
-        "the denominator has order {0}: it must be 1 to {MAX_ORDER}, its first coefficient not 0"
-    )]
     Order(usize),
     /// Numerator of too high an order.
-    #[error(
-        "the numerator has order {numerator}, the denominator {denominator}: the numerator's must be lower"
-    )]
     NotProper {
         /// Order of the numerator.
         numerator: usize,
@@ -47,13 +42,10 @@ pub enum PlantError {
         denominator: usize,
     },
     /// Negative dead time.
-    #[error("dead time {0} s: must be 0 or more")]
     DeadTime(f64),
     /// Sampling time of a plant in discrete time.
-    #[error("sampling time {0} s: must be above 0")]
     SamplingTime(f64),
     /// Matrices that do not fit together.
-    #[error("{matrix} is {rows} x {columns}: it must be {wanted}")]
     Shape {
         /// Which matrix.
         matrix: &'static str,
@@ -65,7 +57,6 @@ pub enum PlantError {
         wanted: String,
     },
     /// A complex pole or zero without its conjugate.
-    #[error("the {kind} {re} {im:+}j has no conjugate: complex ones must come in pairs")]
     Conjugate {
         /// Pole or zero.
         kind: &'static str,
@@ -75,6 +66,58 @@ pub enum PlantError {
         im: f64,
     },
     /// Coefficients too large or too small to compute with.
-    #[error("the coefficients span too wide a range: choose other units of time or signals")]
     Range,
 }
+
+impl PlantError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::NotFinite => {
+                "a coefficient is not finite: every coefficient must be a number".into()
+            }
+            Self::NoNumerator => {
+                "the numerator is empty or zero: it must have a coefficient that is not 0".into()
+            }
+            Self::Order(given) => msg!(
+                "the denominator has order {}: it must be 1 to {}, its first coefficient not 0",
+                given,
+                MAX_ORDER
+            ),
+            Self::NotProper {
+                numerator,
+                denominator,
+            } => msg!(
+                "the numerator has order {}, the denominator {}: the numerator's must be lower",
+                numerator,
+                denominator
+            ),
+            Self::DeadTime(given) => msg!("dead time {} s: must be 0 or more", given),
+            Self::SamplingTime(given) => msg!("sampling time {} s: must be above 0", given),
+            Self::Shape {
+                matrix,
+                rows,
+                columns,
+                wanted,
+            } => msg!(
+                "{} is {} x {}: it must be {}",
+                matrix,
+                rows,
+                columns,
+                Message::name(wanted.clone())
+            ),
+            Self::Conjugate { kind, re, im } => msg!(
+                "the {} {} {}j has no conjugate: complex ones must come in pairs",
+                kind,
+                re,
+                format!("{:+}", im)
+            ),
+            Self::Range => {
+                "the coefficients span too wide a range: choose other units of time or signals"
+                    .into()
+            }
+        }
+    }
+}
+
+says!(PlantError);

@@ -12,6 +12,8 @@
 
 use super::zero_pole_gain::product;
 use super::{MAX_ORDER, PlantError, TransferFunction};
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Longest text that is read, in characters.
 pub const MAX_TEXT: usize = 500;
@@ -26,17 +28,29 @@ const MAX_DEGREE: usize = 2 * MAX_ORDER;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParseError {
     /// Something in the text.
-    #[error("column {column}: {message}")]
     Text {
         /// Where, in characters from 1.
         column: usize,
         /// What is wrong and what would be right.
-        message: String,
+        message: Message,
     },
     /// The text can be read, but is not a plant.
-    #[error(transparent)]
     Plant(#[from] PlantError),
 }
+
+impl ParseError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Text { column, message } => {
+                msg!("column {}: {}", column, message)
+            }
+            Self::Plant(error) => error.message(),
+        }
+    }
+}
+
+says!(ParseError);
 
 /// Reads a transfer function in `s`; a part before `=`, such as `P(s) =`, is passed over.
 ///
@@ -47,7 +61,7 @@ pub fn parse(text: &str) -> Result<TransferFunction, ParseError> {
     if all.len() > MAX_TEXT {
         return fail(
             MAX_TEXT,
-            format!("the text is too long: at most {MAX_TEXT} characters"),
+            msg!("the text is too long: at most {} characters", MAX_TEXT),
         );
     }
     let at = all.iter().position(|c| *c == '=').map_or(0, |i| i + 1);
@@ -63,15 +77,21 @@ pub fn parse(text: &str) -> Result<TransferFunction, ParseError> {
     let value = parser.sum()?;
     if let Some(c) = parser.peek() {
         return parser.error(match c {
-            ')' | '}' => format!("'{c}' closes nothing: remove it or add an opening one before"),
-            ',' => "',' is not understood: write decimals with a point, such as 0.5".to_owned(),
-            c => format!("'{c}' is not understood: expected +, -, *, / or the end"),
+            ')' | '}' => msg!(
+                "'{}' closes nothing: remove it or add an opening one before",
+                Message::name(c)
+            ),
+            ',' => "',' is not understood: write decimals with a point, such as 0.5".into(),
+            c => msg!(
+                "'{}' is not understood: expected +, -, *, / or the end",
+                Message::name(c)
+            ),
         });
     }
     value.plant()
 }
 
-fn fail<T>(index: usize, message: impl Into<String>) -> Result<T, ParseError> {
+fn fail<T>(index: usize, message: impl Into<Message>) -> Result<T, ParseError> {
     Err(ParseError::Text {
         column: index + 1,
         message: message.into(),
@@ -191,7 +211,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    fn error<T>(&self, message: impl Into<String>) -> Result<T, ParseError> {
+    fn error<T>(&self, message: impl Into<Message>) -> Result<T, ParseError> {
         fail(self.at, message)
     }
 
@@ -239,7 +259,8 @@ impl Parser<'_> {
             if value.delay != next.delay && !one_is_zero {
                 return fail(
                     at,
-                    "both sides must have the same dead time: write it once as a factor of the whole, such as e^{-s} (s+2)/(s+1)^2",
+                    "both sides must have the same dead time: write it once as a factor of the whole, such as e^{-s} \
+                     (s+2)/(s+1)^2",
                 );
             }
             value = Self::bounded(at, value.plus(&next, sign))?;
@@ -250,7 +271,7 @@ impl Parser<'_> {
         if value.degree() > MAX_DEGREE {
             return fail(
                 at,
-                format!("the order becomes too high: at most {MAX_ORDER}"),
+                msg!("the order becomes too high: at most {}", MAX_ORDER),
             );
         }
         if value
@@ -288,7 +309,8 @@ impl Parser<'_> {
                 }
                 if divided && !self.exponential_begins() {
                     return self.error(
-                        "is this below the fraction line or not? Put all that is below in parentheses, such as 1/(s(s+1))",
+                        "is this below the fraction line or not? Put all that is below in parentheses, such as \
+                         1/(s(s+1))",
                     );
                 }
             }
@@ -336,8 +358,9 @@ impl Parser<'_> {
             .collect();
         let exponent = digits.parse::<usize>().ok().filter(|e| *e <= MAX_DEGREE);
         let Some(exponent) = exponent else {
-            return self.error(format!(
-                "the exponent must be a whole number up to {MAX_DEGREE}"
+            return self.error(msg!(
+                "the exponent must be a whole number up to {}",
+                MAX_DEGREE
             ));
         };
         self.at += digits.len();
@@ -370,8 +393,9 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.name(),
-            Some(c) => self.error(format!(
-                "'{c}' is not understood: expected a number, s or ("
+            Some(c) => self.error(msg!(
+                "'{}' is not understood: expected a number, s or (",
+                Message::name(c)
             )),
             None => self.error("the text ends too early: expected a number, s or ("),
         }
@@ -384,7 +408,7 @@ impl Parser<'_> {
         if self.depth > MAX_DEPTH {
             return fail(
                 open,
-                format!("too many brackets inside each other: at most {MAX_DEPTH}"),
+                msg!("too many brackets inside each other: at most {}", MAX_DEPTH),
             );
         }
         let value = self.sum()?;
@@ -394,10 +418,18 @@ impl Parser<'_> {
                 Some(',') => {
                     self.error("',' is not understood: write decimals with a point, such as 0.5")
                 }
-                Some(c) => self.error(format!(
-                    "'{c}' is not understood: expected an operator or '{close}'"
+                Some(c) => self.error(msg!(
+                    "'{}' is not understood: expected an operator or '{}'",
+                    Message::name(c),
+                    Message::name(close)
                 )),
-                None => fail(open, format!("this bracket is never closed: add '{close}'")),
+                None => fail(
+                    open,
+                    msg!(
+                        "this bracket is never closed: add '{}'",
+                        Message::name(close)
+                    ),
+                ),
             };
         }
         Ok(value)
@@ -433,7 +465,10 @@ impl Parser<'_> {
                 self.at = end;
                 Ok(Value::number(value))
             }
-            _ => self.error(format!("'{text}' is no number that can be used")),
+            _ => self.error(msg!(
+                "'{}' is no number that can be used",
+                Message::name(text)
+            )),
         }
     }
 
@@ -473,8 +508,9 @@ impl Parser<'_> {
                 }
             }
             _ => {
-                return self.error(format!(
-                    "'{word}' is not known: write numbers, s and e^{{-Ls}} with a number for L"
+                return self.error(msg!(
+                    "'{}' is not known: write numbers, s and e^{-Ls} with a number for L",
+                    Message::name(word)
                 ));
             }
         };

@@ -9,6 +9,8 @@ use super::math::sentence;
 use super::model::experiments;
 use super::svg::{Axis, Chart, Mark, range};
 use crate::diagnosis::{Discovery, FoundFormula};
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::{brief, with_error};
 
 /// Size of the picture.
@@ -84,23 +86,26 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
 }
 
 /// A formula as a row of the table, and what is said of those that this record cannot tell from the answer.
-fn row(formula: &FoundFormula, class: &str) -> Vec<Cell> {
+fn row(formula: &FoundFormula, class: &'static str) -> Vec<Cell> {
     let parameters = formula.parameters.iter().map(|p| {
-        let value = with_error(p.value, p.std_error, &p.unit);
+        let (name, value) = (
+            Message::name(&p.name),
+            with_error(p.value, p.std_error, &p.unit),
+        );
         if p.is_told() && p.std_error > 0.0 {
-            format!("{} = {value} (95 %: {})", p.name, p.interval())
+            msg!("{} = {} (95 %: {})", name, value, p.interval())
         } else {
-            format!("{} = {value}", p.name)
+            msg!("{} = {}", name, value)
         }
     });
-    let parameters: Vec<String> = parameters.collect();
+    let parameters = Message::list("; ", parameters);
     let class = if formula.in_class { class } else { "" };
     vec![
         Cell::Math(formula.formula.clone()),
-        Cell::Number(formula.length.to_string()),
-        Cell::Number(brief(formula.error)),
-        Cell::Text(parameters.join("; ")),
-        Cell::Text(class.to_owned()),
+        Cell::Number(formula.length.into()),
+        Cell::Number(brief(formula.error).into()),
+        Cell::Text(parameters),
+        Cell::Text(class.into()),
     ]
 }
 

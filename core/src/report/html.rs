@@ -5,24 +5,25 @@ use std::fmt::Write as _;
 use super::escape::escape;
 use super::input::Tongue;
 use super::math::math;
+use crate::message::Message;
 
 impl Tongue {
     /// A text in this language, as text of a page.
-    pub(super) fn page(self, text: &str) -> String {
-        escape(&(self.say)(text))
+    pub(super) fn page(self, text: impl Into<Message>) -> String {
+        escape(&(self.say)(&text.into()))
     }
 }
 
 /// A cell of a table: escaped text in the report's language, to the right if it is a number; formulas are typeset.
 pub(super) enum Cell {
-    Text(String),
-    Number(String),
+    Text(Message),
+    Number(Message),
     /// A symbol or a formula, typeset.
     Math(String),
 }
 
 /// A table; every text is put into the report's language and escaped here.
-pub(super) fn table(out: &mut String, tongue: Tongue, head: &[&str], rows: &[Vec<Cell>]) {
+pub(super) fn table(out: &mut String, tongue: Tongue, head: &[&'static str], rows: &[Vec<Cell>]) {
     out.push_str("<div class=\"wide\"><table><thead><tr>");
     for title in head {
         let _ = write!(out, "<th>{}</th>", tongue.page(title));
@@ -45,7 +46,7 @@ pub(super) fn table(out: &mut String, tongue: Tongue, head: &[&str], rows: &[Vec
 }
 
 /// A section with its heading.
-pub(super) fn section(out: &mut String, tongue: Tongue, title: &str, body: &str) {
+pub(super) fn section(out: &mut String, tongue: Tongue, title: &'static str, body: &str) {
     let _ = write!(
         out,
         "<section>\n<h2>{}</h2>\n{body}</section>\n",
@@ -54,7 +55,7 @@ pub(super) fn section(out: &mut String, tongue: Tongue, title: &str, body: &str)
 }
 
 /// A picture with a caption, which is put into the report's language and escaped here.
-pub(super) fn figure(out: &mut String, tongue: Tongue, svg: &str, caption: &str) {
+pub(super) fn figure(out: &mut String, tongue: Tongue, svg: &str, caption: impl Into<Message>) {
     let _ = writeln!(
         out,
         "<figure>{svg}<figcaption>{}</figcaption></figure>",
@@ -63,12 +64,13 @@ pub(super) fn figure(out: &mut String, tongue: Tongue, svg: &str, caption: &str)
 }
 
 /// Names of curves with their colours.
-pub(super) fn legend(out: &mut String, tongue: Tongue, entries: &[(&str, &str)]) {
+pub(super) fn legend(out: &mut String, tongue: Tongue, entries: &[(&str, &'static str)]) {
     out.push_str("<p class=\"legend\">");
     for (class, name) in entries {
         let _ = write!(
             out,
-            "<span><svg viewBox=\"0 0 24 10\" width=\"24\" height=\"10\" aria-hidden=\"true\"><path class=\"{class}\" d=\"M1 5H23\"/></svg> {}</span> ",
+            "<span><svg viewBox=\"0 0 24 10\" width=\"24\" height=\"10\" aria-hidden=\"true\"><path \
+             class=\"{class}\" d=\"M1 5H23\"/></svg> {}</span> ",
             tongue.page(name)
         );
     }

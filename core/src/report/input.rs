@@ -2,6 +2,7 @@
 
 use crate::diagnosis::{Discovery, Profile, Step, StepReport, Verdict};
 use crate::measurement::Measurement;
+use crate::message::Message;
 use crate::user_model::UserModel;
 
 /// Where a report comes from and how to make it again.
@@ -23,14 +24,14 @@ pub struct Tongue {
     /// Its code (ISO 639-1).
     pub code: &'static str,
     /// A text in it, by what it is in English.
-    pub say: fn(&str) -> String,
+    pub say: fn(&Message) -> String,
 }
 
 impl Tongue {
     /// What stands in the source.
     pub const ENGLISH: Self = Self {
         code: "en",
-        say: str::to_owned,
+        say: Message::to_string,
     };
 }
 

@@ -17,6 +17,8 @@ use std::fmt::Write as _;
 
 use crate::diagnosis::ChannelNoise;
 use crate::measurement::Kind;
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::brief;
 use crate::user_model::UserModel;
 use escape::escape;
@@ -82,42 +84,44 @@ fn answer(out: &mut String, input: &ReportInput) {
     let step = &input.last.step;
     let present = input.model.map(UserModel::present).unwrap_or_default();
     let answer = input.last.answer(input.verdict, &present, false);
-    let verdict = input.verdict.map_or("", |v| v.text.as_str());
-    let kind = match measurement.kind {
-        Kind::Drive => "drive",
-        Kind::Process => "process",
-    };
+    let verdict = input.verdict.map(|v| v.text.clone()).unwrap_or_default();
     let duration = match (measurement.time.first(), measurement.time.last()) {
         (Some(first), Some(last)) => last - first,
         _ => 0.0,
     };
     let tongue = input.tongue;
-    let title = format!("What is missing from the model of {}?", measurement.name);
-    let facts = format!(
-        "{} samples of a {kind} over {} s. Error of the model on the part of the record that it was not fitted to: {} \
-         × the measurement noise; a perfect model would leave {}.",
-        measurement.len(),
-        brief(duration),
-        brief(step.error),
-        brief(input.last.noise_floor),
+    let title = msg!(
+        "What is missing from the model of {}?",
+        Message::name(&measurement.name)
     );
+    let (samples, duration) = (measurement.len(), brief(duration));
+    let facts = match measurement.kind {
+        Kind::Drive => msg!("{} samples of a drive over {} s.", samples, duration),
+        Kind::Process => msg!("{} samples of a process over {} s.", samples, duration),
+    };
+    let facts = facts.and(msg!(
+        "Error of the model on the part of the record that it was not fitted to: {} × the measurement noise; a \
+         perfect model would leave {}.",
+        brief(step.error),
+        brief(input.last.noise_floor)
+    ));
     let _ = write!(
         out,
         "<header>\n<h1>{}</h1>\n<p class=\"answer\">{}</p>\n<p>{}</p>\n<p class=\"facts\">{}</p>\n",
-        tongue.page(&title),
-        tongue.page(&answer),
+        tongue.page(title),
+        tongue.page(answer),
         tongue.page(verdict),
-        tongue.page(&facts),
+        tongue.page(facts),
     );
     let missed = (input.last.step.left > 0.0).then(|| {
-        format!(
+        msg!(
             "{} % of the motion is not explained.",
             brief(100.0 * input.last.step.left)
         )
     });
     let noise = input.last.noise.iter().map(ChannelNoise::words);
     for fact in missed.into_iter().chain(noise) {
-        let _ = writeln!(out, "<p class=\"facts\">{}</p>", tongue.page(&fact));
+        let _ = writeln!(out, "<p class=\"facts\">{}</p>", tongue.page(fact));
     }
     if let Some(next) = input.verdict.and_then(|v| v.next_experiment.as_ref()) {
         let _ = writeln!(
@@ -210,8 +214,8 @@ fn places(input: &ReportInput) -> String {
         }
         legend(&mut out, tongue, &entries);
         out.push_str("<div class=\"pair\">\n");
-        for (svg, caption) in &charts {
-            figure(&mut out, tongue, svg, caption);
+        for (svg, caption) in charts {
+            figure(&mut out, tongue, &svg, caption);
         }
         out.push_str("</div>\n");
     }
@@ -229,7 +233,7 @@ fn missing(input: &ReportInput) -> String {
         )
     );
     for (svg, caption) in pictures::missing(tongue, &input.last.missing) {
-        figure(&mut out, tongue, &svg, &caption);
+        figure(&mut out, tongue, &svg, caption);
     }
     out.push_str("</div>\n");
     out
@@ -244,13 +248,15 @@ fn reproduce(input: &ReportInput) -> String {
         sha256,
     } = input.provenance;
     let tongue = input.tongue;
-    let made = format!("Hysteron {version}. The same file gives the same answer, on any machine.");
-    let file = format!("File: {}, {bytes} bytes, SHA-256", input.measurement.name);
+    let made = msg!("Hysteron {}.", Message::name(version))
+        .and("The same file gives the same answer, on any machine.");
+    let name = Message::name(&input.measurement.name);
+    let file = msg!("File: {}, {} bytes, SHA-256", name, *bytes);
     let mut out = format!(
         "<pre><code>{}</code></pre>\n<p>{}</p>\n<p>{} <code>{}</code></p>\n",
         escape(command),
-        tongue.page(&made),
-        tongue.page(&file),
+        tongue.page(made),
+        tongue.page(file),
         escape(sha256),
     );
     if let Some(model) = input.model {

@@ -8,6 +8,8 @@ use super::math::{display, math};
 use crate::diagnosis::{NextExperiment, Parameter, Step};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::uncertain::{brief, with_error};
 use crate::user_model::Status;
 
@@ -88,7 +90,7 @@ pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
         .map(|p| {
             vec![
                 Cell::Math(p.name.clone()),
-                Cell::Text(p.label.clone()),
+                Cell::Text(Message::words(p.label.clone())),
                 Cell::Number(with_error(p.value, p.std_error, &p.unit)),
                 Cell::Text(
                     match p.status {
@@ -96,13 +98,13 @@ pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
                         Status::Prior(_) => "known roughly",
                         Status::Fixed => "fixed",
                     }
-                    .to_owned(),
+                    .into(),
                 ),
                 Cell::Text(
                     p.effect
                         .filter(|id| *id != VISCOUS_FRICTION)
                         .map_or("baseline", name_of)
-                        .to_owned(),
+                        .into(),
                 ),
             ]
         })
@@ -128,36 +130,37 @@ pub(super) fn parameters(tongue: Tongue, parameters: &[Parameter]) -> String {
 pub(super) fn candidates(tongue: Tongue, steps: &[Step]) -> String {
     let mut out = String::new();
     for step in steps.iter().filter(|s| !s.candidates.is_empty()) {
-        let names: Vec<&str> = added(step).into_iter().map(name_of).collect();
-        let on = if names.is_empty() {
-            "On top of the baseline".to_owned()
+        let names = Message::list(" + ", added(step).into_iter().map(name_of));
+        let error = brief(step.error);
+        let title = if names.is_empty() {
+            msg!("On top of the baseline (error {})", error)
         } else {
-            format!("On top of {}", names.join(" + "))
+            msg!("On top of {} (error {})", names, error)
         };
-        let title = format!("{on} (error {})", brief(step.error));
-        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(&title));
+        let _ = writeln!(out, "<h3>{}</h3>", tongue.page(title));
         let rows: Vec<Vec<Cell>> = step
             .candidates
             .iter()
             .map(|c| {
-                let ids: Vec<&str> = c.effects.iter().map(|e| name_of(*e)).collect();
+                let ids = c.effects.iter().map(|e| name_of(*e));
                 let note = if c.equivalent_to.is_empty() {
-                    c.standing().to_owned()
+                    c.standing().into()
                 } else {
-                    let others: Vec<&str> = c.equivalent_to.iter().map(|e| name_of(*e)).collect();
-                    format!("cannot be told apart from {}", others.join(", "))
+                    let others = c.equivalent_to.iter().map(|e| name_of(*e));
+                    msg!("cannot be told apart from {}", Message::list(", ", others))
                 };
                 // What does not help has values that mean nothing.
                 let shown = c.parameters.iter().filter(|_| c.significant);
-                let values: Vec<String> = shown
-                    .map(|p| format!("{} = {}", p.name, with_error(p.value, p.std_error, &p.unit)))
-                    .collect();
+                let values = shown.map(|p| {
+                    let value = with_error(p.value, p.std_error, &p.unit);
+                    msg!("{} = {}", Message::name(&p.name), value)
+                });
                 vec![
-                    Cell::Text(ids.join(" + ")),
-                    Cell::Number(brief(c.error)),
-                    Cell::Number(format!("{:.1}", c.delta_bic)),
+                    Cell::Text(Message::list(" + ", ids)),
+                    Cell::Number(brief(c.error).into()),
+                    Cell::Number(fixed(c.delta_bic, 1)),
                     Cell::Text(note),
-                    Cell::Text(values.join(", ")),
+                    Cell::Text(Message::list(", ", values)),
                 ]
             })
             .collect();

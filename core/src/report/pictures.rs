@@ -7,6 +7,8 @@ use crate::curve::envelope;
 use crate::diagnosis::{Finding, MissingPart, Profile, ReplayChannel, Step};
 use crate::effect::{StepPart, name_of};
 use crate::measurement::{Channel, Measurement};
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::brief;
 
 /// Size of a wide picture.
@@ -34,20 +36,20 @@ const LOGARITHMIC_FROM: f64 = 40.0;
 
 /// The error of every model and the noise floor.
 pub(super) fn waterfall(tongue: Tongue, steps: &[Step], floor: f64) -> String {
-    let mut rows: Vec<(String, f64, &'static str)> = Vec::new();
+    let mut rows: Vec<(Message, f64, &'static str)> = Vec::new();
     let mut before: Option<&Step> = None;
     for step in steps {
         rows.push((change(step, before), step.error, "bar"));
         before = Some(step);
     }
-    rows.push(("noise floor".to_owned(), floor, "floor"));
+    rows.push(("noise floor".into(), floor, "floor"));
     let (least, most) = range(rows.iter().map(|r| r.1).filter(|e| *e > 0.0)).unwrap_or((1.0, 1.0));
     let logarithmic = most > LOGARITHMIC_FROM * least;
     let bars_of: Vec<Bar> = rows
         .into_iter()
         .map(|(label, error, class)| Bar {
             label,
-            value: brief(error),
+            value: brief(error).into(),
             share: if logarithmic {
                 libm::log(error / (0.5 * least)) / libm::log(most / (0.5 * least))
             } else {
@@ -57,38 +59,38 @@ pub(super) fn waterfall(tongue: Tongue, steps: &[Step], floor: f64) -> String {
         })
         .collect();
     let mut out = String::new();
-    let scale = if logarithmic {
-        "; bars on a logarithmic scale"
+    let caption = if logarithmic {
+        "Error on held-back data in units of the measurement noise; bars on a logarithmic scale."
     } else {
-        ""
+        "Error on held-back data in units of the measurement noise."
     };
     figure(
         &mut out,
         tongue,
         &bars(tongue, WIDE, &bars_of, "Error of every model"),
-        &format!("Error on held-back data in units of the measurement noise{scale}."),
+        caption,
     );
     out
 }
 
 /// What was added to and taken from the model before.
-fn change(step: &Step, before: Option<&Step>) -> String {
+fn change(step: &Step, before: Option<&Step>) -> Message {
     let Some(before) = before else {
-        return "baseline".to_owned();
+        return "baseline".into();
     };
-    let only_in = |a: &Step, b: &Step, sign: &str| -> Vec<String> {
-        a.effects
-            .iter()
-            .filter(|e| !b.effects.contains(e))
-            .map(|e| format!("{sign} {}", name_of(*e)))
-            .collect()
+    let only_in = |a: &Step, b: &Step| {
+        let of_a = a.effects.iter().filter(|e| !b.effects.contains(e));
+        of_a.map(|e| name_of(*e)).collect::<Vec<_>>()
     };
-    let mut parts = only_in(step, before, "+");
-    parts.extend(only_in(before, step, "-"));
-    if parts.is_empty() {
-        "refitted".to_owned()
+    let added = only_in(step, before);
+    let added = added.into_iter().map(|name| msg!("+ {}", name));
+    let taken = only_in(before, step);
+    let taken = taken.into_iter().map(|name| msg!("- {}", name));
+    let changes = Message::list(" ", added.chain(taken));
+    if changes.is_empty() {
+        "refitted".into()
     } else {
-        parts.join(" ")
+        changes
     }
 }
 
@@ -119,8 +121,9 @@ pub(super) fn output(
     let shown = measured.values[from..to]
         .iter()
         .chain(&modelled.modelled[from..to]);
+    let name = || Message::name(&measured.name);
     let y = Axis::roomy(
-        &measured.name,
+        name(),
         &measured.unit,
         range(shown.copied()).unwrap_or((0.0, 1.0)),
     );
@@ -128,18 +131,21 @@ pub(super) fn output(
     chart.shade(spans);
     chart.line(&part(&measured.values), "measured");
     chart.line(&part(&modelled.modelled), "model");
-    let title = format!("{} measured and modelled", measured.name);
+    let title = msg!("{} measured and modelled", name());
     figure(
         out,
         tongue,
-        &chart.finish(&title),
+        &chart.finish(title),
         "In detail: the stretch of the record where the model misses most.",
     );
     let noise = 2.0 * modelled.noise;
-    let label = format!("{} - model", measured.name);
     let residual_axis = |values: &[f64]| {
         let own = values.iter().copied().chain([-noise, noise]);
-        Axis::roomy(&label, &measured.unit, range(own).unwrap_or((0.0, 1.0)))
+        Axis::roomy(
+            msg!("{} - model", name()),
+            &measured.unit,
+            range(own).unwrap_or((0.0, 1.0)),
+        )
     };
     let mut chart = Chart::new(tongue, WIDE, LOW, x(), residual_axis(&residual[from..to]));
     chart.shade(spans);
@@ -149,7 +155,7 @@ pub(super) fn output(
     figure(
         out,
         tongue,
-        &chart.finish(&format!("Residual of {}", measured.name)),
+        &chart.finish(msg!("Residual of {}", name())),
         "The residual there, and twice the noise to both sides.",
     );
     let whole = Axis::new("time", "s", (time[0], time[n - 1]));
@@ -163,10 +169,7 @@ pub(super) fn output(
     figure(
         out,
         tongue,
-        &chart.finish(&format!(
-            "Residual of {} over the whole record",
-            measured.name
-        )),
+        &chart.finish(msg!("Residual of {} over the whole record", name())),
         "The residual over the whole record.",
     );
 }
@@ -200,7 +203,7 @@ pub(super) fn profiles(
     wanted: &[&str],
     first: &[Profile],
     last: &[Profile],
-) -> Vec<(String, String)> {
+) -> Vec<(String, Message)> {
     let mut axes: Vec<&str> = Vec::new();
     let others = last.iter().map(|p| p.axis.as_str());
     for axis in wanted.iter().copied().chain(others) {
@@ -218,11 +221,13 @@ pub(super) fn profiles(
                 .outputs
                 .get(profile.output)
                 .map_or("", |o| o.name.as_str());
-            let name = axis.replace('_', " ");
+            let name = Message::words(axis.replace('_', " "));
             pictures.push((
                 profile_chart(tongue, &name, profile, before),
-                format!(
-                    "Residual of {output} over {name}: root mean square, in units of the noise."
+                msg!(
+                    "Residual of {} over {}: root mean square, in units of the noise.",
+                    Message::name(output),
+                    &name
                 ),
             ));
         }
@@ -234,7 +239,7 @@ pub(super) fn profiles(
 const MOST_ESTIMATES: usize = 4;
 
 /// Pictures with captions of what is missing, estimated without a model.
-pub(super) fn missing(tongue: Tongue, parts: &[MissingPart]) -> Vec<(String, String)> {
+pub(super) fn missing(tongue: Tongue, parts: &[MissingPart]) -> Vec<(String, Message)> {
     parts
         .iter()
         .take(MOST_ESTIMATES)
@@ -253,9 +258,9 @@ pub(super) fn missing(tongue: Tongue, parts: &[MissingPart]) -> Vec<(String, Str
                 tongue,
                 HALF,
                 TALL,
-                Axis::new(&m.axis, &m.axis_unit, x),
+                Axis::new(Message::words(m.axis.clone()), &m.axis_unit, x),
                 Axis::roomy(
-                    &format!("missing {}", m.what),
+                    msg!("missing {}", Message::words(m.what.clone())),
                     &m.unit,
                     y.unwrap_or((0.0, 1.0)),
                 ),
@@ -270,15 +275,16 @@ pub(super) fn missing(tongue: Tongue, parts: &[MissingPart]) -> Vec<(String, Str
                 .flat_map(|p| [[p.from, p.value], [p.to, p.value]]);
             chart.line(&ends.collect::<Vec<_>>(), "estimate");
             chart.level(0.0, "noise");
-            let title = format!("Missing {} over {}", m.what, m.axis);
-            (chart.finish(&title), m.text.clone())
+            let [what, axis] = [&m.what, &m.axis].map(|name| Message::words(name.clone()));
+            let title = msg!("Missing {} over {}", what, axis);
+            (chart.finish(title), m.text.clone())
         })
         .collect()
 }
 
 fn profile_chart(
     tongue: Tongue,
-    name: &str,
+    name: &Message,
     profile: &Profile,
     before: Option<&Profile>,
 ) -> String {
@@ -303,5 +309,5 @@ fn profile_chart(
     chart.line(&other, "before");
     chart.line(&own, "residual");
     chart.level(1.0, "noise");
-    chart.finish(&format!("Residual over {name}"))
+    chart.finish(msg!("Residual over {}", name))
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::escape::escape;
 use super::input::Tongue;
+use crate::message::Message;
 use crate::uncertain::{significant, titled};
 
 /// Space for the labels, in units of the picture.
@@ -21,7 +22,7 @@ const CHARACTER: f64 = 6.8;
 /// An axis: what it shows, with its unit, and the range that is shown.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
-    label: String,
+    label: Message,
     from: f64,
     to: f64,
     logarithmic: bool,
@@ -29,8 +30,8 @@ pub(super) struct Axis {
 
 impl Axis {
     /// A range that is empty or no number becomes one that can be drawn.
-    pub fn new(name: &str, unit: &str, range: (f64, f64)) -> Self {
-        let label = titled(name, unit);
+    pub fn new(name: impl Into<Message>, unit: &str, range: (f64, f64)) -> Self {
+        let label = titled(name.into(), unit);
         let (mut from, mut to) = range;
         if !(from.is_finite() && to.is_finite() && from <= to && (to - from).is_finite()) {
             (from, to) = (0.0, 1.0);
@@ -48,7 +49,7 @@ impl Axis {
     }
 
     /// The same with some room at both ends.
-    pub fn roomy(name: &str, unit: &str, range: (f64, f64)) -> Self {
+    pub fn roomy(name: impl Into<Message>, unit: &str, range: (f64, f64)) -> Self {
         let mut axis = Self::new(name, unit, range);
         let room = 0.06 * (axis.to - axis.from);
         axis.from -= room;
@@ -57,7 +58,7 @@ impl Axis {
     }
 
     /// A logarithmic axis where the range spans far, both ends above 0; else a linear one from 0.
-    pub fn sized(name: &str, unit: &str, (from, to): (f64, f64)) -> Self {
+    pub fn sized(name: impl Into<Message>, unit: &str, (from, to): (f64, f64)) -> Self {
         if from > 0.0 && to > LOGARITHMIC_FROM * from {
             Self {
                 logarithmic: true,
@@ -240,30 +241,38 @@ impl Chart {
     }
 
     /// The picture; `title` is what a screen reader says.
-    pub fn finish(self, title: &str) -> String {
-        let page = |text: &str| self.tongue.page(text);
+    pub fn finish(self, title: impl Into<Message>) -> String {
+        let page = |text: Message| self.tongue.page(text);
         let (w, h) = (self.width, self.height);
         let mut out = format!(
             "<svg viewBox=\"0 0 {w} {h}\" role=\"img\"><title>{}</title>",
-            page(title)
+            page(title.into())
         );
         let (left, right, top, bottom) = (LEFT, w - RIGHT, TOP, h - BOTTOM);
         let spacing = |ticks: &[f64]| ticks.windows(2).next().map_or(1.0, |t| t[1] - t[0]);
         let xs = self.x.ticks((w / 110.0).max(2.0));
         for tick in &xs {
-            let (x, text) = (self.at_x(*tick), page(&tick_text(*tick, spacing(&xs))));
+            let (x, text) = (
+                self.at_x(*tick),
+                page(tick_text(*tick, spacing(&xs)).into()),
+            );
             let _ = write!(
                 out,
-                "<path class=\"grid\" d=\"M{x:.1} {top}V{bottom:.1}\"/><text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>",
+                "<path class=\"grid\" d=\"M{x:.1} {top}V{bottom:.1}\"/><text x=\"{x:.1}\" y=\"{:.1}\" \
+                 text-anchor=\"middle\">{text}</text>",
                 bottom + 15.0
             );
         }
         let ys = self.y.ticks(((h - TOP - BOTTOM) / 28.0).max(2.0));
         for tick in &ys {
-            let (y, text) = (self.at_y(*tick), page(&tick_text(*tick, spacing(&ys))));
+            let (y, text) = (
+                self.at_y(*tick),
+                page(tick_text(*tick, spacing(&ys)).into()),
+            );
             let _ = write!(
                 out,
-                "<path class=\"grid\" d=\"M{left} {y:.1}H{right}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
+                "<path class=\"grid\" d=\"M{left} {y:.1}H{right}\"/><text x=\"{:.1}\" y=\"{:.1}\" \
+                 text-anchor=\"end\">{text}</text>",
                 left - 5.0,
                 y + 4.0
             );
@@ -271,7 +280,8 @@ impl Chart {
         // A nested picture cuts off what leaves the axes.
         let _ = write!(
             out,
-            "<svg x=\"{left}\" y=\"{top}\" width=\"{:.1}\" height=\"{:.1}\" viewBox=\"{left} {top} {:.1} {:.1}\">{}</svg>",
+            "<svg x=\"{left}\" y=\"{top}\" width=\"{:.1}\" height=\"{:.1}\" viewBox=\"{left} {top} {:.1} \
+             {:.1}\">{}</svg>",
             right - left,
             bottom - top,
             right - left,
@@ -280,16 +290,18 @@ impl Chart {
         );
         let _ = write!(
             out,
-            "<path class=\"frame\" d=\"M{left} {top}V{bottom:.1}H{right}\"/><text class=\"faint\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            "<path class=\"frame\" d=\"M{left} {top}V{bottom:.1}H{right}\"/><text class=\"faint\" x=\"{:.1}\" \
+             y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
             0.5 * (left + right),
             h - 6.0,
-            page(&self.x.label)
+            page(self.x.label.clone())
         );
         let middle = 0.5 * (top + bottom);
         let _ = write!(
             out,
-            "<text class=\"faint\" transform=\"translate(14 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text></svg>",
-            page(&self.y.label)
+            "<text class=\"faint\" transform=\"translate(14 {middle:.1}) rotate(-90)\" \
+             text-anchor=\"middle\">{}</text></svg>",
+            page(self.y.label.clone())
         );
         out
     }
@@ -297,16 +309,16 @@ impl Chart {
 
 /// A bar with its label and value as text; `share` of the full length.
 pub(super) struct Bar {
-    pub label: String,
-    pub value: String,
+    pub label: Message,
+    pub value: Message,
     pub share: f64,
     pub class: &'static str,
 }
 
 /// Horizontal bars under each other.
-pub(super) fn bars(tongue: Tongue, width: f64, rows: &[Bar], title: &str) -> String {
+pub(super) fn bars(tongue: Tongue, width: f64, rows: &[Bar], title: &'static str) -> String {
     const ROW: f64 = 28.0;
-    let said = |text: fn(&Bar) -> &str| -> Vec<String> {
+    let said = |text: fn(&Bar) -> &Message| -> Vec<String> {
         rows.iter().map(|row| (tongue.say)(text(row))).collect()
     };
     let (labels, values) = (said(|r| &r.label), said(|r| &r.value));
@@ -333,7 +345,8 @@ pub(super) fn bars(tongue: Tongue, width: f64, rows: &[Bar], title: &str) -> Str
         let length = (share * room).max(2.0);
         let _ = write!(
             out,
-            "<text x=\"0\" y=\"{:.1}\">{}</text><rect class=\"{}\" x=\"{label:.1}\" y=\"{:.1}\" width=\"{length:.1}\" height=\"18\" rx=\"2\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            "<text x=\"0\" y=\"{:.1}\">{}</text><rect class=\"{}\" x=\"{label:.1}\" y=\"{:.1}\" \
+             width=\"{length:.1}\" height=\"18\" rx=\"2\"/><text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             y + 18.0,
             escape(name),
             row.class,

@@ -2,6 +2,8 @@
 
 use crate::drive::DriveError;
 use crate::hunting::ServoError;
+use crate::message::{Message, says};
+use crate::msg;
 use crate::plant::{ParseError, PlantError};
 use crate::relay::RelayError;
 use crate::simulate::SimulateError;
@@ -10,7 +12,6 @@ use crate::simulate::SimulateError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScenarioError {
     /// The text.
-    #[error("line {line}, column {column}: {message}")]
     Text {
         /// Line, from 1.
         line: usize,
@@ -20,31 +21,20 @@ pub enum ScenarioError {
         message: String,
     },
     /// The plant is given in no way, or in several.
-    #[error(
-        "[plant]: {0}; expected one of: numerator and denominator; formula; zeros, poles and gain; gain and \
-         time_constant; a, b and c"
-    )]
     Form(&'static str),
     /// The relay's outputs are given in no way, or in two.
-    #[error("[relay]: {0}; expected gain, or levels = [down, up]")]
     Levels(&'static str),
     /// The formula.
-    #[error("[plant] formula, {0}")]
     Formula(ParseError),
     /// The plant.
-    #[error("[plant]: {0}")]
     Plant(#[from] PlantError),
     /// The relay.
-    #[error("[relay]: {0}")]
     Relay(#[from] RelayError),
     /// The run.
-    #[error("[run]: {0}")]
     Run(SimulateError),
     /// A servo.
-    #[error("[servo]: {0}")]
     Servo(ServoError),
     /// A drive, its relay or its run.
-    #[error("{table}: {error}")]
     Drive {
         /// Where it stands.
         table: &'static str,
@@ -52,6 +42,40 @@ pub enum ScenarioError {
         error: DriveError,
     },
 }
+
+impl ScenarioError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Text {
+                line,
+                column,
+                message,
+            } => msg!(
+                "line {}, column {}: {}",
+                line,
+                column,
+                Message::name(message)
+            ),
+            Self::Form(given) => msg!(
+                "[plant]: {}; expected one of: numerator and denominator; formula; zeros, poles and gain; gain and \
+         time_constant; a, b and c",
+                given
+            ),
+            Self::Levels(given) => {
+                msg!("[relay]: {}; expected gain, or levels = [down, up]", given)
+            }
+            Self::Formula(error) => msg!("[plant] formula, {}", error),
+            Self::Plant(error) => msg!("[plant]: {}", error),
+            Self::Relay(error) => msg!("[relay]: {}", error),
+            Self::Run(error) => msg!("[run]: {}", error),
+            Self::Servo(error) => msg!("[servo]: {}", error),
+            Self::Drive { table, error } => msg!("{}: {}", table, error),
+        }
+    }
+}
+
+says!(ScenarioError);
 
 /// What the reader of TOML says, with its place.
 pub(super) fn located(text: &str, error: &toml::de::Error) -> ScenarioError {

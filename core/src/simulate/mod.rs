@@ -20,6 +20,8 @@ pub use noise::Noise;
 pub(crate) use noise::NoiseAlong;
 pub use trajectory::{Cut, Trajectory};
 
+use crate::message::{Message, says};
+use crate::msg;
 use crate::plant::{MAX_ORDER, Multivariable, PlantError, StateSpace};
 use crate::relay::{Relay, RelayError};
 pub(crate) use sliding::Sliding;
@@ -122,13 +124,10 @@ fn fits(
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulateError {
     /// The plant.
-    #[error(transparent)]
     Plant(#[from] PlantError),
     /// The relay.
-    #[error(transparent)]
     Relay(#[from] RelayError),
     /// An option out of range.
-    #[error("{name} is {value}: it must be {range}")]
     Option {
         /// Which.
         name: &'static str,
@@ -138,7 +137,6 @@ pub enum SimulateError {
         range: &'static str,
     },
     /// An initial state of the wrong size.
-    #[error("the initial state has {found} values: a plant of order {order} needs {order}")]
     InitialState {
         /// Values given.
         found: usize,
@@ -146,9 +144,6 @@ pub enum SimulateError {
         order: usize,
     },
     /// The number of relays is not that of the plant's channels.
-    #[error(
-        "there are {relays} relays and {lags} delays for a plant with {channels} inputs and outputs"
-    )]
     Relays {
         /// Relays given.
         relays: usize,
@@ -158,6 +153,37 @@ pub enum SimulateError {
         channels: usize,
     },
 }
+
+impl SimulateError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Plant(error) => error.message(),
+            Self::Relay(error) => error.message(),
+            Self::Option { name, value, range } => {
+                msg!("{} is {}: it must be {}", name, value, range)
+            }
+            Self::InitialState { found, order } => msg!(
+                "the initial state has {} values: a plant of order {} needs {}",
+                found,
+                order,
+                order
+            ),
+            Self::Relays {
+                relays,
+                lags,
+                channels,
+            } => msg!(
+                "there are {} relays and {} delays for a plant with {} inputs and outputs",
+                relays,
+                lags,
+                channels
+            ),
+        }
+    }
+}
+
+says!(SimulateError);
 
 /// Runs `plant` under `relay`, whose output acts `lag` s (relay's delay and dead time) after a switch.
 ///

@@ -191,9 +191,9 @@ fn berner(
     let fits = times.iter().all(|t| t.is_finite() && *t > 0.0);
     if !fits {
         return Err(TuningError::NotFirstOrder {
-            what: "the time constant from the half periods".to_owned(),
+            what: "the time constant from the half periods".into(),
             value: times[0].min(times[1]),
-            range: "above 0 s".to_owned(),
+            range: "above 0 s".into(),
         });
     }
     Ok(Model::Lag {
@@ -224,9 +224,9 @@ fn shen(point: &NyquistPoint, static_gain: Option<f64>) -> Result<Model, TuningE
     let ratio = gain / size;
     if ratio < 1.0 {
         return Err(TuningError::NotFirstOrder {
-            what: "the static gain over that at the oscillation".to_owned(),
+            what: "the static gain over that at the oscillation".into(),
             value: ratio,
-            range: "above 1".to_owned(),
+            range: "above 1".into(),
         });
     }
     let turn = ((ratio - 1.0) * (ratio + 1.0)).sqrt();
@@ -243,8 +243,8 @@ fn checked(model: Model) -> Result<Model, TuningError> {
         return Ok(model);
     }
     Err(TuningError::NotFirstOrder {
-        what: "the dead time from the phase".to_owned(),
+        what: "the dead time from the phase".into(),
         value: dead_time,
-        range: "0 s or more".to_owned(),
+        range: "0 s or more".into(),
     })
 }

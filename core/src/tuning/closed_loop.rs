@@ -323,7 +323,7 @@ impl Simulation {
         judge.finish(&mut out);
         if out.time.is_empty() || self.transition.iter().any(|v| !v.is_finite()) {
             return Err(TuningError::NotFinite(
-                "the closed loop's transition".to_owned(),
+                "the closed loop's transition".into(),
             ));
         }
         Ok(out)

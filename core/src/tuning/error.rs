@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, fixed, says};
+use crate::msg;
 use crate::plant::PlantError;
 use crate::relay::RelayError;
 use crate::uncertain::{brief, digits};
@@ -10,43 +12,30 @@ use crate::uncertain::{brief, digits};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum TuningError {
     /// The plant cannot be.
-    #[error(transparent)]
     #[serde(skip)]
     Plant(#[from] PlantError),
     /// The relay cannot be.
-    #[error(transparent)]
     #[serde(skip)]
     Relay(#[from] RelayError),
     /// A setting out of its range.
-    #[error("{name} is {value}: it must be {range}")]
     Setting {
         /// Its name.
-        name: String,
+        name: Message,
         /// What it was.
         value: f64,
         /// What it may be.
-        range: String,
+        range: Message,
     },
     /// A rule that is not in the registry.
-    #[error("there is no tuning rule `{0}`: take one of the registry's ids")]
     UnknownRule(String),
     /// The relay switches without end.
-    #[error(
-        "the relay chatters with hysteresis {hysteresis}: nothing limits its frequency, so there is no period to measure; give it more hysteresis"
-    )]
     Chattering {
         /// Its hysteresis, in the unit of the output.
         hysteresis: f64,
     },
     /// A mode of the plant is so fast that the experiment would take millions of steps.
-    #[error(
-        "a part of the plant is far too fast for the rest, so that the experiment would take millions of steps; leave that part out"
-    )]
     TooFast,
     /// The loop does not settle into a cycle with two switches a period.
-    #[error(
-        "no settled oscillation after {duration} s with relay gain {gain} and hysteresis {hysteresis}: more gain or less hysteresis may help"
-    )]
     NoOscillation {
         /// How long the experiment lasted, s.
         duration: f64,
@@ -56,11 +45,6 @@ pub enum TuningError {
         hysteresis: f64,
     },
     /// An identification that needs different half periods.
-    #[error(
-        "the half periods {} s and {} s under asymmetry {asymmetry} tell nothing apart: the relay must push harder one way than the other",
-        digits(*on, 4),
-        digits(*off, 4)
-    )]
     Symmetric {
         /// Time with the relay up, s.
         on: f64,
@@ -70,21 +54,15 @@ pub enum TuningError {
         asymmetry: f64,
     },
     /// The measured numbers do not fit a first-order lag or integrator with dead time.
-    #[error(
-        "no first-order model fits: {what} is {value:.4}, but a lag or an integrator with dead time has it {range}"
-    )]
     NotFirstOrder {
         /// Which number.
-        what: String,
+        what: Message,
         /// Its value.
         value: f64,
         /// What it would be.
-        range: String,
+        range: Message,
     },
     /// A controller that cannot turn a point of the Nyquist curve as far as wanted.
-    #[error(
-        "the point must be turned by {turn:.4} rad: this controller turns it by more than {least:.4} and less than {most:.4} rad"
-    )]
     OutOfReach {
         /// Wanted turn, rad.
         turn: f64,
@@ -94,10 +72,6 @@ pub enum TuningError {
         most: f64,
     },
     /// The gain adaptation did not reach the wanted amplitude.
-    #[error(
-        "the gain adaptation stands at gain {gain:.4} with a relative amplitude error of {} after {runs} relay runs: the wanted phase may be out of this plant's reach",
-        brief(*error)
-    )]
     NotConverged {
         /// Relay runs made.
         runs: usize,
@@ -107,19 +81,93 @@ pub enum TuningError {
         error: f64,
     },
     /// Numbers that left the range of floating point.
-    #[error("{0} is not finite: the plant's numbers are too far apart to compute with")]
-    NotFinite(String),
+    NotFinite(Message),
 }
 
+impl TuningError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Plant(error) => error.message(),
+            Self::Relay(error) => error.message(),
+            Self::Setting { name, value, range } => msg!(
+                "{} is {}: it must be {}",
+                name,
+                value,
+                range
+            ),
+            Self::UnknownRule(given) => msg!(
+                "there is no tuning rule `{}`: take one of the registry's ids",
+                Message::name(given)
+            ),
+            Self::Chattering { hysteresis } => msg!(
+                "the relay chatters with hysteresis {}: nothing limits its frequency, so there is no period to \
+                 measure; give it more hysteresis",
+                hysteresis
+            ),
+            Self::TooFast => {
+                "a part of the plant is far too fast for the rest, so that the experiment would take millions \
+                 of steps; leave that part out"
+                    .into()
+            }
+            Self::NoOscillation { duration, gain, hysteresis } => msg!(
+                "no settled oscillation after {} s with relay gain {} and hysteresis {}: more gain or less \
+                 hysteresis may help",
+                duration,
+                gain,
+                hysteresis
+            ),
+            Self::Symmetric { on, off, asymmetry } => msg!(
+                "the half periods {} s and {} s under asymmetry {} tell nothing apart: the relay must push \
+                 harder one way than the other",
+                digits(*on, 4),
+                digits(*off, 4),
+                asymmetry
+            ),
+            Self::NotFirstOrder { what, value, range } => msg!(
+                "no first-order model fits: {} is {}, but a lag or an integrator with dead time has it {}",
+                what,
+                fixed(*value, 4),
+                range
+            ),
+            Self::OutOfReach { turn, least, most } => msg!(
+                "the point must be turned by {} rad: this controller turns it by more than {} and less than {} \
+                 rad",
+                fixed(*turn, 4),
+                fixed(*least, 4),
+                fixed(*most, 4)
+            ),
+            Self::NotConverged { runs, gain, error } => msg!(
+                "the gain adaptation stands at gain {} with a relative amplitude error of {} after {} relay \
+                 runs: the wanted phase may be out of this plant's reach",
+                fixed(*gain, 4),
+                brief(*error),
+                runs
+            ),
+            Self::NotFinite(given) => msg!(
+                "{} is not finite: the plant's numbers are too far apart to compute with",
+                given
+            ),
+        }
+    }
+}
+
+says!(TuningError);
+
 /// Checks that `value` is finite and `fits`.
-pub(super) fn check(name: &str, value: f64, fits: bool, range: &str) -> Result<(), TuningError> {
+pub(super) fn check(
+    name: &'static str,
+    value: f64,
+    fits: bool,
+    range: impl Into<Message>,
+) -> Result<(), TuningError> {
     if value.is_finite() && fits {
         Ok(())
     } else {
         Err(TuningError::Setting {
-            name: name.to_owned(),
+            name: name.into(),
             value,
-            range: range.to_owned(),
+            range: range.into(),
         })
     }
 }

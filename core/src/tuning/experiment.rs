@@ -241,7 +241,7 @@ fn measure(
     run: &Trajectory,
     cycle: &Cycle,
 ) -> Result<RelayTest, TuningError> {
-    let broken = || TuningError::NotFinite("the measured cycle".to_owned());
+    let broken = || TuningError::NotFinite("the measured cycle".into());
     let mut x = periodic_state(space, cycle, run).ok_or_else(broken)?;
     let period = cycle.period();
     let omega = 2.0 * PI / period;

@@ -62,7 +62,7 @@ fn quotient(from: &NyquistPoint, to: Complex<f64>) -> Result<(f64, f64), TuningE
         Ok((size, turn))
     } else {
         Err(TuningError::NotFinite(
-            "the ratio of target and point".to_owned(),
+            "the ratio of target and point".into(),
         ))
     }
 }

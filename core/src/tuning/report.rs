@@ -15,6 +15,8 @@ use super::moving_point::{NyquistPoint, Target};
 use super::phase_margin::RelayDesign;
 use super::rules::{Identified, RULES, Wish, rule};
 use super::ultimate::{Crossing, UltimateReport, compare, crossings};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::plant::TransferFunction;
 use crate::relay::Relay;
 
@@ -75,7 +77,7 @@ impl TuningInput {
         self.present.validate()?;
         rule(&self.rule)?;
         let wish = &self.wish;
-        let angle = |name: &str, value: f64| {
+        let angle = |name: &'static str, value: f64| {
             let range = "above 0 and below pi/2 rad";
             check(name, value, value > 0.0 && value < 0.5 * PI, range)
         };
@@ -156,9 +158,9 @@ pub struct RuleReport {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// What is done, in a few words.
-    pub title: String,
+    pub title: Message,
     /// What came out, in a sentence with numbers.
-    pub sentence: String,
+    pub sentence: Message,
     /// Measured period, s.
     pub period: Option<f64>,
     /// Measured amplitude, half of peak to peak.
@@ -337,9 +339,11 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
     let test = &report.test;
     steps.push(relay_step(
         "Relay instead of the controller",
-        format!(
-            "It oscillates with period {:.4} s and amplitude {:.4} (half of peak to peak): Ku = {:.4}.",
-            test.period, test.amplitude, report.ultimate.by_relay.gain
+        msg!(
+            "It oscillates with period {} s and amplitude {} (half of peak to peak): Ku = {}.",
+            fixed(test.period, 4),
+            fixed(test.amplitude, 4),
+            fixed(report.ultimate.by_relay.gain, 4)
         ),
         test,
         None,
@@ -347,10 +351,11 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
     if let Ok(found) = &report.phase_margin {
         for (n, step) in found.adaptation.steps.iter().enumerate() {
             steps.push(relay_step(
-                &format!("Gain adaptation, K({n})"),
-                format!(
-                    "With K = {:.6} the amplitude is off by {:.2e} of the wanted one.",
-                    step.gain, step.error
+                msg!("Gain adaptation, K({})", n),
+                msg!(
+                    "With K = {} the amplitude is off by {} of the wanted one.",
+                    fixed(step.gain, 6),
+                    format!("{:.2e}", step.error)
                 ),
                 &step.test,
                 Some(Pid::p(step.gain)),
@@ -360,12 +365,12 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
     if let Ok(found) = &report.asymmetric {
         steps.push(relay_step(
             "Asymmetric relay",
-            format!(
-                "The half periods {:.4} s and {:.4} s have the ratio {:.4}: normalised dead time {:.3}.",
-                found.test.on_time,
-                found.test.off_time,
-                found.half_period_ratio,
-                found.normalised_dead_time
+            msg!(
+                "The half periods {} s and {} s have the ratio {}: normalised dead time {}.",
+                fixed(found.test.on_time, 4),
+                fixed(found.test.off_time, 4),
+                fixed(found.half_period_ratio, 4),
+                fixed(found.normalised_dead_time, 3)
             ),
             &found.test,
             None,
@@ -373,8 +378,8 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
     }
     if let (Ok(after), Ok(rule)) = (&report.after, rule(&input.rule)) {
         steps.push(Step {
-            title: rule.name.to_owned(),
-            sentence: rule.sentence.to_owned(),
+            title: rule.name.into(),
+            sentence: rule.sentence.into(),
             period: None,
             amplitude: None,
             run: None,
@@ -385,9 +390,14 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
     steps
 }
 
-fn relay_step(title: &str, sentence: String, test: &RelayTest, controller: Option<Pid>) -> Step {
+fn relay_step(
+    title: impl Into<Message>,
+    sentence: Message,
+    test: &RelayTest,
+    controller: Option<Pid>,
+) -> Step {
     Step {
-        title: title.to_owned(),
+        title: title.into(),
         sentence,
         period: Some(test.period),
         amplitude: Some(test.amplitude),
@@ -396,26 +406,26 @@ fn relay_step(title: &str, sentence: String, test: &RelayTest, controller: Optio
     }
 }
 
-fn loop_step(title: &str, report: &LoopReport) -> Step {
+fn loop_step(title: &'static str, report: &LoopReport) -> Step {
     let response = &report.set_point;
     let sentence = match report.margins {
-        Some(m) => format!(
-            "Overshoot {:.0} %, {}; maximum sensitivity {:.2}.",
-            100.0 * response.overshoot,
+        Some(m) => msg!(
+            "Overshoot {} %, {}; maximum sensitivity {}.",
+            fixed(100.0 * response.overshoot, 0),
             response.settling_time.map_or_else(
-                || "not settled in the time shown".to_owned(),
-                |t| format!("settled after {t:.3} s")
+                || "not settled in the time shown".into(),
+                |t| msg!("settled after {} s", fixed(t, 3))
             ),
-            m.max_sensitivity
+            fixed(m.max_sensitivity, 2)
         ),
-        None => format!(
+        None => msg!(
             "Unstable: {} poles in the right half plane.",
             report.unstable_poles
         ),
     };
     let input = response.time.iter().zip(&response.input);
     Step {
-        title: title.to_owned(),
+        title: title.into(),
         sentence,
         period: None,
         amplitude: None,

@@ -205,9 +205,9 @@ fn with_dead_time(model: &Model) -> Result<(), TuningError> {
         return Ok(());
     }
     Err(TuningError::NotFirstOrder {
-        what: "the dead time".to_owned(),
+        what: "the dead time".into(),
         value: dead_time,
-        range: "above 0 s".to_owned(),
+        range: "above 0 s".into(),
     })
 }
 

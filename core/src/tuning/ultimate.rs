@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::experiment::RelayTest;
 use super::scan;
 use crate::limit_cycle::{Cycle, typical_frequency};
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::plant::TransferFunction;
 use crate::relay::Relay;
 
@@ -126,38 +128,43 @@ pub enum Without {
 }
 
 impl StabilityLimits {
-    /// Both in words, with a space before.
-    pub fn text(&self) -> String {
+    /// Both in words.
+    pub fn text(&self) -> Message {
         let at = |u: &Ultimate| {
             if u.period.is_finite() {
-                format!("{:.4} at a period of {:.4} s", u.gain, u.period)
+                msg!(
+                    "{} at a period of {} s",
+                    fixed(u.gain, 4),
+                    fixed(u.period, 4)
+                )
             } else {
-                format!("{:.4} at frequency 0", u.gain)
+                msg!("{} at frequency 0", fixed(u.gain, 4))
             }
         };
         match (&self.lower, &self.upper) {
-            (None, Some(upper)) => format!(" The plant's true Ku is {} (-180°).", at(upper)),
-            (Some(lower), Some(upper)) => format!(
-                " The loop is stable between two gains only: the lower limit is {}, the upper one, the true Ku, {}.",
+            (None, Some(upper)) => msg!("The plant's true Ku is {} (-180°).", at(upper)),
+            (Some(lower), Some(upper)) => msg!(
+                "The loop is stable between two gains only: the lower limit is {}, the upper one, the true Ku, {}.",
                 at(lower),
                 at(upper)
             ),
-            (Some(lower), None) => format!(
-                " The loop is stable above a gain only: that lower limit is {}; there is no true Ku.",
+            (Some(lower), None) => msg!(
+                "The loop is stable above a gain only: that lower limit is {}; there is no true Ku.",
                 at(lower)
             ),
             (None, None) => match self.without {
                 Without::Stable => {
-                    " With a proportional controller the loop is stable at every gain: the plant has no true Ku."
+                    "With a proportional controller the loop is stable at every gain: the plant has no true Ku."
                 }
                 Without::Unstable => {
-                    " With a proportional controller no gain makes the loop stable: the plant has no true Ku."
+                    "With a proportional controller no gain makes the loop stable: the plant has no true Ku."
                 }
                 Without::OnTheLimit => {
-                    " With a proportional controller every gain leaves the loop on the limit of stability: the plant has no Ku of its own."
+                    "With a proportional controller every gain leaves the loop on the limit of stability: the plant \
+                     has no Ku of its own."
                 }
             }
-            .to_owned(),
+            .into(),
         }
     }
 }
@@ -309,7 +316,7 @@ pub struct RelayGain {
     /// The plant's own limits.
     pub limits: StabilityLimits,
     /// All of it in words, with the remedy.
-    pub text: String,
+    pub text: Message,
 }
 
 /// Phase within so many degrees of -180 that counts as the ultimate point itself.
@@ -345,27 +352,31 @@ fn gain_text(
     by_relay: &Ultimate,
     shown: &ShownPoint,
     limits: &StabilityLimits,
-) -> String {
+) -> Message {
     let formula = if relay.is_symmetric() {
         "4k/(πa)"
     } else {
         "the first harmonics of an asymmetric relay"
     };
-    let mut text = format!(
-        "By the relay Ku = {:.4} ({formula}) at a period of {:.4} s. The cycle shows the plant at {:.1}°, where 1/|P| is {:.4}.",
-        by_relay.gain,
-        by_relay.period,
-        shown.phase_deg,
-        1.0 / shown.magnitude
+    let mut text = msg!(
+        "By the relay Ku = {} ({}) at a period of {} s.",
+        fixed(by_relay.gain, 4),
+        formula,
+        fixed(by_relay.period, 4)
     );
-    text += &limits.text();
+    text.add(msg!(
+        "The cycle shows the plant at {}°, where 1/|P| is {}.",
+        fixed(shown.phase_deg, 1),
+        fixed(1.0 / shown.magnitude, 4)
+    ));
+    text.add(limits.text());
     let away = (shown.phase_deg + 180.0).abs() > AT_ULTIMATE && limits.upper.is_some();
     if away && !relay.is_symmetric() {
-        text += " A symmetric relay with less hysteresis comes nearer to it.";
+        text.add("A symmetric relay with less hysteresis comes nearer to it.");
     } else if away && relay.hysteresis > 0.0 {
-        text += " Less hysteresis comes nearer to it.";
+        text.add("Less hysteresis comes nearer to it.");
     } else if away && relay.delay > 0.0 {
-        text += " A relay without delay comes nearer to it.";
+        text.add("A relay without delay comes nearer to it.");
     }
     text
 }

@@ -112,7 +112,7 @@ mod tests {
             axis_unit: unit.to_owned(),
             parts: (0..30).map(step).collect(),
             explained: 0.9,
-            text: String::new(),
+            text: crate::message::Message::default(),
         }
     }
 

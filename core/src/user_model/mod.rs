@@ -29,6 +29,8 @@ use serde::{Deserialize, Serialize};
 use crate::diagnosis::Step;
 use crate::effect::{EffectId, Formula, VISCOUS_FRICTION};
 use crate::measurement::Kind;
+use crate::message::Message;
+use crate::msg;
 
 pub use crate::diagnosis::Status;
 pub use form::{Form, forms};
@@ -172,7 +174,7 @@ impl UserModel {
     ///
     /// # Errors
     /// One sentence that says what is wrong and what would be right.
-    pub fn add_candidate(&mut self, text: &str) -> Result<(), String> {
+    pub fn add_candidate(&mut self, text: &str) -> Result<(), Message> {
         let (name, rest) = text
             .split_once(':')
             .ok_or("write it as \"name: formula\", such as \"bump: -a*exp(-((x-b)/c)^2)\"")?;
@@ -183,20 +185,28 @@ impl UserModel {
             Some(taken) => format!("own_{taken}"),
             None => name.to_owned(),
         };
-        let id = EffectId::own(&name)
-            .ok_or_else(|| format!("'{name}' is no name for an effect: {}", EffectId::OWN_NAMES))?;
+        let id = EffectId::own(&name).ok_or_else(|| {
+            msg!(
+                "'{}' is no name for an effect: {}",
+                Message::name(&name),
+                EffectId::OWN_NAMES
+            )
+        })?;
         if self.find(id).is_some() {
-            return Err(format!("{name} is there twice: give it another name"));
+            return Err(msg!(
+                "{} is there twice: give it another name",
+                Message::name(name)
+            ));
         }
         if self.candidates.len() + self.effects.len() >= MAX_PRESENT {
-            return Err(format!("too many effects: at most {MAX_PRESENT}"));
+            return Err(msg!("too many effects: at most {}", MAX_PRESENT));
         }
         let symbols = Formula {
             name: name.clone(),
             text: formula.to_owned(),
         }
         .parameters(self.kind)
-        .map_err(|e| format!("{name}, {e}"))?;
+        .map_err(|e| msg!("{}, {}", Message::name(&name), &e))?;
         let mut parameters = Vec::new();
         for part in values.split(',').filter(|p| !p.trim().is_empty()) {
             let value = part.split_once('=').and_then(|(symbol, value)| {
@@ -207,10 +217,10 @@ impl UserModel {
                 ))
             });
             let (symbol, value) = value.ok_or_else(|| {
-                format!(
+                msg!(
                     "'{}' is no starting value: write such as {} = 0.05, with a comma before the next one",
-                    part.trim(),
-                    symbols.first().map_or("a", String::as_str)
+                    Message::name(part.trim()),
+                    Message::name(symbols.first().map_or("a", String::as_str))
                 )
             })?;
             parameters.push(Known {

@@ -8,16 +8,26 @@ use toml::de::{DeTable, DeValue};
 use super::{Known, MAX_BYTES, MAX_PRESENT, Present, Status, UserModel};
 use crate::effect::{self, EffectId, Formula, VISCOUS_FRICTION, baseline};
 use crate::measurement::Kind;
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Why a text is no model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {message}")]
 pub struct ModelFileError {
     /// Line, from 1.
     pub line: usize,
     /// What is wrong and what would be right.
-    pub message: String,
+    pub message: Message,
 }
+
+impl ModelFileError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        msg!("line {}: {}", &self.line, &self.message)
+    }
+}
+
+says!(ModelFileError);
 
 type Value<'t> = Spanned<DeValue<'t>>;
 
@@ -31,11 +41,16 @@ impl UserModel {
         if text.len() > MAX_BYTES {
             return Err(ModelFileError {
                 line: 1,
-                message: format!("the file is longer than {MAX_BYTES} bytes: this is no model"),
+                message: msg!(
+                    "the file is longer than {} bytes: this is no model",
+                    MAX_BYTES
+                ),
             });
         }
-        let file = DeTable::parse(text)
-            .map_err(|e| reader.error(&e.span().unwrap_or(0..0), e.message().to_owned()))?;
+        let file = DeTable::parse(text).map_err(|e| {
+            let said = Message::name(e.message());
+            reader.error(&e.span().unwrap_or(0..0), said)
+        })?;
         reader.model(file.get_ref())
     }
 }
@@ -45,7 +60,7 @@ struct Reader<'t> {
 }
 
 impl Reader<'_> {
-    fn error(&self, at: &Range<usize>, message: impl Into<String>) -> ModelFileError {
+    fn error(&self, at: &Range<usize>, message: impl Into<Message>) -> ModelFileError {
         let before = self.text.get(..at.start).unwrap_or(self.text);
         ModelFileError {
             line: before.matches('\n').count() + 1,
@@ -57,17 +72,18 @@ impl Reader<'_> {
     fn entries<'v, 'i>(
         &self,
         table: &'v DeTable<'i>,
-        place: &str,
+        place: impl Into<Message>,
         accepted: &[&str],
     ) -> Result<impl Fn(&str) -> Option<&'v Value<'i>>, ModelFileError> {
         for key in table.keys() {
             if !accepted.contains(&key.get_ref().as_ref()) {
                 return Err(self.error(
                     &key.span(),
-                    format!(
-                        "'{}' is not known {place}; expected {}",
-                        shown(key.get_ref()),
-                        list(accepted)
+                    msg!(
+                        "'{}' is not known {}; expected {}",
+                        Message::name(shown(key.get_ref())),
+                        place,
+                        Message::name(list(accepted))
                     ),
                 ));
             }
@@ -123,7 +139,12 @@ impl Reader<'_> {
                     };
                     return Err(self.error(
                         &place_of(&p.symbol, value),
-                        format!("{} = {} must be {wanted}", p.symbol, p.value),
+                        msg!(
+                            "{} = {} must be {}",
+                            Message::name(&p.symbol),
+                            p.value,
+                            wanted
+                        ),
                     ));
                 }
             }
@@ -135,20 +156,24 @@ impl Reader<'_> {
             let Some(effects) = value.get_ref().as_array() else {
                 return Err(self.error(
                     &value.span(),
-                    format!("{title} must be written as [[{title}]]"),
+                    msg!("{} must be written as [[{}]]", title, title),
                 ));
             };
             if model.effects.len() + effects.len() > MAX_PRESENT {
-                let text = format!(
-                    "{} effects are too many: at most {MAX_PRESENT}",
-                    effects.len()
+                let text = msg!(
+                    "{} effects are too many: at most {}",
+                    effects.len(),
+                    MAX_PRESENT
                 );
                 return Err(self.error(&value.span(), text));
             }
             for effect in effects {
                 let present = self.effect(effect, kind, own)?;
                 if model.find(present.id).is_some() {
-                    let text = format!("{} is there twice: once is enough", present.id);
+                    let text = msg!(
+                        "{} is there twice: once is enough",
+                        Message::name(present.id.as_str())
+                    );
                     return Err(self.error(&effect.span(), text));
                 }
                 if own {
@@ -179,7 +204,7 @@ impl Reader<'_> {
         let id = entry("id").ok_or_else(|| {
             self.error(
                 &value.span(),
-                format!("an effect needs an id: {}", list(&known)),
+                msg!("an effect needs an id: {}", Message::name(list(&known))),
             )
         })?;
         let name = id.get_ref().as_str().unwrap_or("");
@@ -189,13 +214,12 @@ impl Reader<'_> {
             .filter(|e| e.kinds().contains(&kind));
         let Some(effect) = effect else {
             let why = if name == VISCOUS_FRICTION.as_str() {
-                "viscous_friction is part of every drive: its d1 stands under [parameters]"
-                    .to_owned()
+                "viscous_friction is part of every drive: its d1 stands under [parameters]".into()
             } else {
-                format!(
+                msg!(
                     "no effect is called '{}'; expected {}",
-                    shown(name),
-                    list(&known)
+                    Message::name(shown(name)),
+                    Message::name(list(&known))
                 )
             };
             return Err(self.error(&id.span(), why));
@@ -204,7 +228,8 @@ impl Reader<'_> {
         let parameters = match entry("parameters") {
             None => Vec::new(),
             Some(value) => {
-                let parameters = self.parameters(value, effect.id().as_str(), &symbols)?;
+                let parameters =
+                    self.parameters(value, Message::name(effect.id().as_str()), &symbols)?;
                 for p in &parameters {
                     let spec = effect.parameters().iter().find(|s| s.symbol == p.symbol);
                     if let Some((spec, wanted)) =
@@ -212,9 +237,12 @@ impl Reader<'_> {
                     {
                         return Err(self.error(
                             &place_of(&p.symbol, value),
-                            format!(
-                                "{} = {} ({}) must be {wanted}",
-                                p.symbol, p.value, spec.label
+                            msg!(
+                                "{} = {} ({}) must be {}",
+                                Message::name(&p.symbol),
+                                p.value,
+                                spec.label,
+                                wanted
                             ),
                         ));
                     }
@@ -239,9 +267,9 @@ impl Reader<'_> {
     ) -> Result<Present, ModelFileError> {
         let name = id.get_ref().as_str().unwrap_or("");
         let own = EffectId::own(name).ok_or_else(|| {
-            let why = format!(
+            let why = msg!(
                 "'{}' is no name for an effect: {}",
-                shown(name),
+                Message::name(shown(name)),
                 EffectId::OWN_NAMES
             );
             self.error(&id.span(), why)
@@ -253,11 +281,11 @@ impl Reader<'_> {
         };
         let symbols = written
             .parameters(kind)
-            .map_err(|e| self.error(&formula.span(), format!("formula, {e}")))?;
+            .map_err(|e| self.error(&formula.span(), msg!("formula, {}", &e)))?;
         let symbols: Vec<&str> = symbols.iter().map(String::as_str).collect();
         let parameters = match parameters {
             None => Vec::new(),
-            Some(value) => self.parameters(value, name, &symbols)?,
+            Some(value) => self.parameters(value, Message::name(name), &symbols)?,
         };
         Ok(Present {
             id: own,
@@ -269,17 +297,20 @@ impl Reader<'_> {
     fn parameters(
         &self,
         value: &Value,
-        owner: &str,
+        owner: impl Into<Message>,
         symbols: &[&str],
     ) -> Result<Vec<Known>, ModelFileError> {
         let Some(table) = value.get_ref().as_table() else {
             return Err(self.error(
                 &value.span(),
-                format!("parameters must be a table of {}", list(symbols)),
+                msg!(
+                    "parameters must be a table of {}",
+                    Message::name(list(symbols))
+                ),
             ));
         };
-        let place = format!("among the parameters of {owner}");
-        let _checked = self.entries(table, &place, symbols)?;
+        let place = msg!("among the parameters of {}", owner.into());
+        let _checked = self.entries(table, place, symbols)?;
         table
             .iter()
             .map(|(key, value)| self.parameter(key.get_ref(), value))
@@ -299,10 +330,13 @@ impl Reader<'_> {
             return Ok(known);
         };
         let accepted = ["value", "tolerance", "status", "unit"];
-        let place = format!("in {symbol}");
-        let entry = self.entries(table, &place, &accepted)?;
+        let place = msg!("in {}", Message::name(symbol));
+        let entry = self.entries(table, place, &accepted)?;
         let Some(number) = entry("value") else {
-            return Err(self.error(&value.span(), format!("{symbol} needs a value")));
+            return Err(self.error(
+                &value.span(),
+                msg!("{} needs a value", Message::name(symbol)),
+            ));
         };
         known.value = self.number("value", number)?;
         let tolerance = match entry("tolerance") {
@@ -322,7 +356,10 @@ impl Reader<'_> {
             (None | Some(Some("fixed")), _) => Status::Fixed,
             (Some(Some("free")), _) => Status::Free,
             (Some(Some("prior")), None) => {
-                let text = format!("{symbol} is a prior and needs a tolerance above 0");
+                let text = msg!(
+                    "{} is a prior and needs a tolerance above 0",
+                    Message::name(symbol)
+                );
                 return Err(self.error(&value.span(), text));
             }
             _ => {
@@ -353,7 +390,10 @@ impl Reader<'_> {
         number.filter(|n| n.is_finite()).ok_or_else(|| {
             self.error(
                 &value.span(),
-                format!("{name} must be a finite number, such as 8.8e-4, or a table with a value"),
+                msg!(
+                    "{} must be a finite number, such as 8.8e-4, or a table with a value",
+                    Message::name(name)
+                ),
             )
         })
     }

@@ -54,7 +54,7 @@ pub fn read(door: Door, bytes: &[u8]) -> Option<String> {
         Door::Csv | Door::Mat | Door::Hdf5 | Door::Json | Door::Log => measured(bytes),
         Door::Scenario => Scenario::from_toml(&text).err().map(|e| e.to_string()),
         Door::Model => UserModel::from_toml(&text).err().map(|e| e.to_string()),
-        Door::Link => link::read(&text, &defaults()).err(),
+        Door::Link => link::read(&text, &defaults()).err().map(|e| e.to_string()),
     }?;
     let wrong = said.trim().is_empty() || said.contains(char::is_control);
     wrong.then_some(said)

@@ -1,6 +1,7 @@
 //! What can be set: figure, relay, gap, masses, contact, playback.
 
 use hysteron_core::drive::{Command, Contact, drifting_test, figures};
+use hysteron_core::msg;
 
 use super::units::MILLI;
 use super::{Backlash, SPEED};
@@ -53,7 +54,7 @@ impl Backlash {
             for figure in figures() {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
-                    .add(egui::Button::new(tr(format!("Fig. {}", figure.number))).selected(chosen))
+                    .add(egui::Button::new(tr(msg!("Fig. {}", figure.number))).selected(chosen))
                     .on_hover_text(tr(format!("{}: {}", figure.title, figure.claim)));
                 targets.note(format!("gap:figure-{}", figure.number), ui, &button);
                 if button.clicked() {

@@ -1,6 +1,8 @@
 //! Which relay should one use on a drive that is known only roughly?
 
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
+use hysteron_core::message::fixed;
+use hysteron_core::msg;
 
 use super::units::MILLI;
 use crate::language::tr;
@@ -88,20 +90,20 @@ impl Design {
 
 fn proposal_ui(ui: &mut egui::Ui, test: &DriftingTest) {
     let relay = test.relay.relay;
-    ui.label(tr(format!(
-        "k = {:.3} N m, a = {:.2}, ε = {:.3} rad/s, {:.2} ms of added delay, reversed every {:.1} s, sampled every {:.2} ms or faster.",
-        relay.gain,
-        relay.asymmetry,
-        relay.hysteresis,
-        1e3 * test.added_delay,
-        test.relay.flip.unwrap_or(0.0),
-        1e3 * test.relay.sampling.unwrap_or(0.0),
+    ui.label(tr(msg!(
+        "k = {} N m, a = {}, ε = {} rad/s, {} ms of added delay, reversed every {} s, sampled every {} ms or faster.",
+        fixed(relay.gain, 3),
+        fixed(relay.asymmetry, 2),
+        fixed(relay.hysteresis, 3),
+        fixed(1e3 * test.added_delay, 2),
+        fixed(test.relay.flip.unwrap_or(0.0), 1),
+        fixed(1e3 * test.relay.sampling.unwrap_or(0.0), 2)
     )));
-    ui.label(tr(format!(
-        "The cycle swings over {:.2} mrad in {:.2} ms and crosses the gap in {:.1} s at most.",
-        MILLI * test.cycle.swing,
-        1e3 * test.cycle.period,
-        test.traverse
+    ui.label(tr(msg!(
+        "The cycle swings over {} mrad in {} ms and crosses the gap in {} s at most.",
+        fixed(MILLI * test.cycle.swing, 2),
+        fixed(1e3 * test.cycle.period, 2),
+        fixed(test.traverse, 1)
     )));
     for warning in &test.warnings {
         ui.colored_label(ui.visuals().warn_fg_color, tr(warning));

@@ -15,6 +15,8 @@ mod words;
 
 use hysteron_core::drive::{Command, DriveInput, DriveJob, VelocityRelay, drifting_test, figures};
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use crate::desk::Desk;
 use crate::page::{Hint, Offer, Page, View};
@@ -75,7 +77,7 @@ pub struct Backlash {
     file: Option<String>,
     /// The file that was opened last.
     last: Option<Held>,
-    message: Option<String>,
+    message: Option<Message>,
 }
 
 impl Default for Backlash {
@@ -118,7 +120,7 @@ impl Backlash {
                     self.simulation = Some((self.input, job));
                     self.worked = 0.0;
                 }
-                Err(error) => self.message = Some(error.to_string()),
+                Err(error) => self.message = Some(error.into()),
             }
         }
         let Some((_, job)) = &mut self.simulation else {
@@ -166,7 +168,7 @@ impl Backlash {
 
     fn open_held(&mut self, ctx: &egui::Context, file: Held) {
         if !measurement(&file.name) {
-            self.message = Some(format!(
+            self.message = Some(msg!(
                 "{} is a model, which this page has no use for: open it in Compare, beside a measurement.",
                 file.name
             ));
@@ -198,7 +200,7 @@ impl Backlash {
                     let content = Content::Plain(bytes.into());
                     self.open_as(ctx, &name, content, arrival.reading);
                 }
-                Err(error) => self.message = Some(format!("{name}: cannot be read ({error})")),
+                Err(error) => self.message = Some(msg!("{}: cannot be read ({})", name, error)),
             }
         }
         let Some((of, job)) = &mut self.estimation else {
@@ -246,7 +248,7 @@ impl Backlash {
     }
 
     /// Nothing came of a file: what was open before is.
-    fn keep(&mut self, message: String) {
+    fn keep(&mut self, message: Message) {
         self.file = self.open_file();
         self.message = Some(message);
     }
@@ -293,9 +295,9 @@ impl Backlash {
             return;
         };
         if scene.input().is_some_and(|shown| *shown != self.input) && self.simulation.is_some() {
-            theme::answer_of_before_ui(ui, &scene.answer());
+            theme::answer_of_before_ui(ui, scene.answer());
         } else {
-            theme::answer_ui(ui, &scene.answer());
+            theme::answer_ui(ui, scene.answer());
         }
     }
 
@@ -477,8 +479,7 @@ impl Backlash {
     fn hint(&self) -> Hint {
         if self.measured() {
             return Hint {
-                sentence: "Is the gap all that is missing? Drop the file on Compare too."
-                    .to_owned(),
+                sentence: "Is the gap all that is missing? Drop the file on Compare too.".into(),
                 commands: vec![crate::command::Command::Go("compare")],
             };
         }

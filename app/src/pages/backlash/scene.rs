@@ -6,6 +6,8 @@ use hysteron_core::drive::{
 };
 use hysteron_core::figures::Check;
 use hysteron_core::measurement::{Measurement, Quantity};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use super::drift::lesson;
 use super::units::MILLI;
@@ -54,8 +56,8 @@ pub struct Scene {
     /// Largest torque, N m.
     pub strongest: f64,
     /// What the motor alone tells, once it is known.
-    pub estimate: Option<Result<GapEstimate, String>>,
-    pub lesson: String,
+    pub estimate: Option<Result<GapEstimate, Message>>,
+    pub lesson: Message,
 }
 
 impl Scene {
@@ -75,13 +77,14 @@ impl Scene {
     /// A measured drive.
     pub fn measured(
         measurement: &Measurement,
-        estimate: Result<GapEstimate, String>,
-    ) -> Result<Self, String> {
+        estimate: Result<GapEstimate, Message>,
+    ) -> Result<Self, Message> {
         let output = |q| measurement.output(q).map(|c| c.values.clone());
         let name = measurement.name.clone();
         let Some(x1) = output(Quantity::Position) else {
-            return Err(format!(
-                "{name}: no motor position; expected a column x1 [rad]"
+            return Err(msg!(
+                "{}: no motor position; expected a column x1 [rad]",
+                name
             ));
         };
         let time = measurement.time.clone();
@@ -104,12 +107,12 @@ impl Scene {
             v1,
             ..DriveRun::default()
         };
-        let mut scene = Self::new(Shown::Measured(name), run, lesson.to_owned());
+        let mut scene = Self::new(Shown::Measured(name), run, lesson.into());
         scene.estimate = Some(estimate);
         Ok(scene)
     }
 
-    fn new(shown: Shown, run: DriveRun, lesson: String) -> Self {
+    fn new(shown: Shown, run: DriveRun, lesson: Message) -> Self {
         let thin = |values: &[f64]| -> Vec<[f64; 2]> {
             let curve = envelope(&run.time, values, CURVE_POINTS).into_iter();
             curve.map(|[t, x]| [t, MILLI * x]).collect()

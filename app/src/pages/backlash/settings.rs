@@ -1,6 +1,8 @@
 //! What is set on the page.
 
 use hysteron_core::drive::{Command, DriveInput, figures};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use serde::{Deserialize, Serialize};
 
 use super::Backlash;
@@ -57,7 +59,7 @@ impl Settable for Backlash {
         ctx: &egui::Context,
         settings: Settings,
         _desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         settings.check()?;
         let file = match &settings.file {
             Some(name) if settings.file != self.file => {
@@ -97,34 +99,34 @@ impl Backlash {
 }
 
 impl Settings {
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), Message> {
         if let Some(number) = self.figure
             && figures().iter().all(|f| f.number != number)
         {
-            return Err(format!("There is no figure {number} on this page."));
+            return Err(msg!("There is no figure {} on this page.", number));
         }
         let run = &self.run;
-        let sentence = |e: &dyn std::fmt::Display| format!("This drive is not possible: {e}.");
-        run.drive.validate().map_err(|e| sentence(&e))?;
+        let sentence = |e: Message| msg!("This drive is not possible: {}.", e);
+        run.drive.validate().map_err(|e| sentence(e.into()))?;
         if let Command::Relay(relay) = run.command {
-            relay.validate().map_err(|e| sentence(&e))?;
+            relay.validate().map_err(|e| sentence(e.into()))?;
         }
         if !(run.duration > 0.0 && run.duration <= LONGEST_RUN) {
-            return Err(format!("A run must last above 0 to {LONGEST_RUN} s."));
+            return Err(msg!("A run must last above 0 to {} s.", LONGEST_RUN));
         }
         let samples = run.step.map_or(0.0, |step| run.duration / step);
         if !(0.0..=MOST_SAMPLES).contains(&samples) {
-            return Err(format!("A run may have {MOST_SAMPLES} samples."));
+            return Err(msg!("A run may have {} samples.", MOST_SAMPLES));
         }
         if run.max_events > hysteron_core::drive::MAX_EVENTS {
-            return Err(sentence(&"it may have 500,000 events"));
+            return Err(sentence("it may have 500,000 events".into()));
         }
         let positive = |v: f64| v > 0.0 && v <= 1e6;
         if !positive(self.expected_gap) || !positive(self.largest_torque) {
-            return Err("Gap and torque of the design must be above 0.".to_owned());
+            return Err("Gap and torque of the design must be above 0.".into());
         }
         if !SPEEDS.contains(&self.speed) {
-            return Err("The speed of the playback must be above 0.".to_owned());
+            return Err("The speed of the playback must be above 0.".into());
         }
         Ok(())
     }

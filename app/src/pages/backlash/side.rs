@@ -2,6 +2,7 @@
 
 use hysteron_core::backlash::GapEstimate;
 use hysteron_core::drive::{Command, drifting_test};
+use hysteron_core::msg;
 
 use super::Backlash;
 use super::built_in::BUILT_IN;
@@ -62,7 +63,7 @@ impl Backlash {
         ui.horizontal_wrapped(|ui| {
             for built_in in &BUILT_IN {
                 let button = ui
-                    .button(tr(format!("Open {}", built_in.file.id)))
+                    .button(tr(msg!("Open {}", built_in.file.id)))
                     .on_hover_text(tr(built_in.story));
                 targets.note(format!("gap:{}", built_in.file.id), ui, &button);
                 if button.clicked() {

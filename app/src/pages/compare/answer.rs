@@ -3,6 +3,8 @@
 use hysteron_core::diagnosis::{DiscoveryEnd, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::brief;
 use hysteron_core::user_model::UserModel;
 
@@ -48,7 +50,7 @@ impl Compare {
     pub(super) fn reading_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         if let Some(opening) = &self.opening {
             ui.horizontal_wrapped(|ui| {
-                ui.label(tr(format!("Reading {} ...", opening.file)));
+                ui.label(tr(msg!("Reading {} ...", Message::name(&opening.file))));
                 if ui.small_button(tr("Cancel")).clicked() {
                     commands.push(Command::CancelReading);
                 }
@@ -58,13 +60,24 @@ impl Compare {
 
     pub(super) fn answer_ui(&self, ui: &mut egui::Ui) {
         let text = match self.report() {
-            None => "Comparing the measurement with a model ...".to_owned(),
+            None => "Comparing the measurement with a model ...".into(),
             // What is on the screen is not the fit.
             Some(report) if self.hand_error().is_some() => {
                 let (error, exact) = self.hand_error().unwrap_or_default();
-                let about = if exact { "" } else { "about " };
                 let [error, fitted] = [error, report.step.error].map(times_noise);
-                format!("By hand the error is {about}{error} × the noise; the fit leaves {fitted}.")
+                if exact {
+                    msg!(
+                        "By hand the error is {} × the noise; the fit leaves {}.",
+                        error,
+                        fitted
+                    )
+                } else {
+                    msg!(
+                        "By hand the error is about {} × the noise; the fit leaves {}.",
+                        error,
+                        fitted
+                    )
+                }
             }
             Some(report) => self.explained().unwrap_or_else(|| {
                 let present = self.model.as_ref().map(UserModel::present);
@@ -73,13 +86,8 @@ impl Compare {
             }),
         };
         // A formula that is found stands as it does in a book.
-        let (text, formula) = match self.explaining_formula() {
-            Some(formula) if text.ends_with(&formula) => {
-                let words = text.len() - formula.len();
-                (text[..words].trim_end().to_owned(), Some(formula))
-            }
-            _ => (text, None),
-        };
+        let formula = self.explaining_formula();
+        let formula = formula.filter(|_| text == A_FORMULA_DOES);
         let before = self.report().is_some() && self.job.is_some();
         if before && self.shown.as_ref() != Some(&self.effects) {
             theme::answer_of_before_ui(ui, &text);
@@ -95,9 +103,8 @@ impl Compare {
     }
 
     /// What explains the rest where no effect does.
-    fn explained(&self) -> Option<String> {
-        let formula = self.explaining_formula()?;
-        Some(format!("{A_FORMULA_DOES} {formula}"))
+    fn explained(&self) -> Option<Message> {
+        self.explaining_formula().map(|_| A_FORMULA_DOES.into())
     }
 
     /// The formula that does.

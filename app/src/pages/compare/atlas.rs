@@ -3,6 +3,8 @@
 use egui::Color32;
 use egui_plot::{HLine, Line, LineStyle, Points, Span};
 use hysteron_core::diagnosis::{Finding, Profile, ProfileBin, StepReport};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::titled;
 
 use super::parts::Part;
@@ -51,9 +53,9 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
             .get(profile.output)
             .map_or("", |c| c.title());
         let title = if many {
-            format!("{name} over {}", words(&profile.axis))
+            msg!("{} over {}", Message::name(name), words(&profile.axis))
         } else {
-            format!("over {}", words(&profile.axis))
+            msg!("over {}", words(&profile.axis))
         };
         ui.label(tr(title));
         let earlier = before.and_then(|b| twin(b, profile));
@@ -111,8 +113,8 @@ pub(super) fn words(axis: &str) -> String {
 }
 
 /// Label of an axis with its unit.
-fn axis_label(profile: &Profile) -> String {
-    titled(&words(&profile.axis), &profile.unit)
+fn axis_label(profile: &Profile) -> Message {
+    titled(words(&profile.axis), &profile.unit)
 }
 
 /// Share of an axis within which bins are one point: a sampled axis has only so many values.
@@ -186,7 +188,7 @@ pub(super) fn draw(
 
 /// A small plot that stays where it is.
 pub(super) fn small(id: String, profile: &Profile, y: &'static str) -> Chart<'static> {
-    let axes = [axis_label(profile), y.to_owned()];
+    let axes = [axis_label(profile).to_string(), y.into()];
     let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH).still();
     match (profile.bins.first(), profile.bins.last()) {
         (Some(first), Some(last)) if is_discrete(profile) => chart.with(|plot| {

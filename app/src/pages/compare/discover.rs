@@ -24,7 +24,7 @@ impl Compare {
         self.unknown.searching = Some(Searching {
             effects: effects.clone(),
             job: Job::run(ctx, task),
-            progress: (0.0, "Looking for a formula".to_owned()),
+            progress: (0.0, "Looking for a formula".into()),
         });
     }
 

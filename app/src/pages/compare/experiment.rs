@@ -3,6 +3,8 @@
 use hysteron_core::diagnosis::{FittedModel, Limits, NextExperiment, Program, Trial};
 use hysteron_core::effect::name_of;
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::opening::Opening;
 use hysteron_core::uncertain::in_unit;
 
@@ -27,7 +29,7 @@ pub(super) fn ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    let names: Vec<&str> = proposal.class.iter().map(|id| name_of(*id)).collect();
+    let names: Vec<&'static str> = proposal.class.iter().map(|id| name_of(*id)).collect();
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         let title = match names.len() {
@@ -35,7 +37,7 @@ pub(super) fn ui(
             _ => "These cannot be told apart with this record",
         };
         ui.strong(tr(title));
-        ui.label(tr(names.join(" or ")));
+        ui.label(tr(Message::list(" or ", names)));
         if proposal.sufficient {
             ui.add_space(4.0);
             ui.strong(tr("Try this experiment"));
@@ -59,18 +61,19 @@ pub(super) fn preview(page: &Compare, proposal: &NextExperiment) -> Option<Vec<c
 }
 
 /// What the experiment is for, with one of the models.
-fn purpose(page: &Compare, proposal: &NextExperiment, model: &FittedModel) -> String {
-    let names: Vec<&str> = proposal.class.iter().map(|id| name_of(*id)).collect();
+fn purpose(page: &Compare, proposal: &NextExperiment, model: &FittedModel) -> Message {
+    let names: Vec<&'static str> = proposal.class.iter().map(|id| name_of(*id)).collect();
     let file = page.measurement.as_ref().map_or("", |m| m.name.as_str());
-    format!(
-        "Experiment that tells {} apart, for {file}. Shown here for the case {}.",
-        names.join(" and "),
+    msg!(
+        "Experiment that tells {} apart, for {}. Shown here for the case {}.",
+        Message::list(" and ", names),
+        Message::name(file),
         name_of(model.effect)
     )
 }
 
 /// The page that shows a loop, and what opens it there and says its purpose.
-fn opened(opening: Opening, sentence: String) -> (&'static str, Vec<command::Command>) {
+fn opened(opening: Opening, sentence: Message) -> (&'static str, Vec<command::Command>) {
     let (page, title, set) = match opening {
         Opening::Loop(input) => ("explore", "Explore", command::Command::SetLoop(input)),
         Opening::Drive(run) => {
@@ -106,14 +109,17 @@ fn opening_ui(
     };
     for (k, model) in proposal.models.iter().enumerate() {
         ui.horizontal_wrapped(|ui| {
-            ui.label(tr(format!("If it is {}:", name_of(model.effect))));
+            ui.label(tr(msg!("If it is {}:", name_of(model.effect))));
             for (j, gain) in gains.iter().enumerate() {
                 let Some(opening) = proposal.opening(model, *gain) else {
                     continue;
                 };
                 let (place, command) = opened(opening, purpose(page, proposal, model));
                 let gain = in_unit(gain.to_string(), &proposal.input_unit);
-                let open = ui.button(tr(format!("{place} with gain {gain}")));
+                let open = ui.button(tr(Message::Words(
+                    format!("{place} with gain {{}}").into(),
+                    vec![gain.into()],
+                )));
                 targets.note(format!("experiment:{index}:open:{k}:{j}"), ui, &open);
                 if open.clicked() {
                     commands.push(Command::Desk(command));

@@ -37,7 +37,7 @@ pub(super) fn report(page: &Compare) -> Option<Document> {
         },
         tongue: Tongue {
             code: spoken().code(),
-            say,
+            say: |text| say(text),
         },
     });
     Some(Document {

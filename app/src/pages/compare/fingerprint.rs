@@ -4,6 +4,8 @@ use egui_plot::{Line, LineStyle};
 use hysteron_core::diagnosis::{Fingerprint, Profile, StepReport};
 use hysteron_core::effect::{self, EffectId, name_of};
 use hysteron_core::measurement::Measurement;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::titled;
 
 use super::atlas::{draw, grid_ui, small, words};
@@ -91,7 +93,11 @@ pub(super) fn ui(
     grid_ui(&profiles, ui, |profile, ui| {
         let output = measurement.outputs.get(profile.output);
         let output = output.map_or("", |c| c.name.as_str());
-        ui.label(tr(format!("{output} over {}", words(&profile.axis))));
+        ui.label(tr(msg!(
+            "{} over {}",
+            Message::name(output),
+            words(&profile.axis)
+        )));
         profile_ui(report, profile, ui);
     });
 }
@@ -102,15 +108,27 @@ fn two_digits(likeness: f64) -> String {
 }
 
 /// How alike, in words.
-fn sentence(print: &Fingerprint) -> String {
+fn sentence(print: &Fingerprint) -> Message {
     let name = name_of(print.effect);
     let alike = two_digits(print.likeness);
     if print.likeness >= SAME {
-        format!("The residual looks like {name}: similarity {alike}, where 1 is identical.")
+        msg!(
+            "The residual looks like {}: similarity {}, where 1 is identical.",
+            name,
+            alike
+        )
     } else if print.likeness >= ALIKE {
-        format!("{name} explains part of the residual: similarity {alike}, where 1 is identical.")
+        msg!(
+            "{} explains part of the residual: similarity {}, where 1 is identical.",
+            name,
+            alike
+        )
     } else {
-        format!("The residual does not look like {name}: similarity {alike}, where 1 is identical.")
+        msg!(
+            "The residual does not look like {}: similarity {}, where 1 is identical.",
+            name,
+            alike
+        )
     }
 }
 
@@ -135,9 +153,9 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
             .take(series.len())
             .map(|(t, (y, m))| [*t, y - m])
             .collect();
-        let label = titled(output.title(), &output.unit);
+        let label = titled(Message::name(output.title()), &output.unit);
         let id = format!("fingerprint {} {index}", print.effect);
-        let axes = ["time [s]".to_owned(), label];
+        let axes = ["time [s]".to_owned(), label.to_string()];
         let linked = egui::Id::unique("fingerprint");
         let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH).linked(linked);
         chart.show(ui, |plot| {

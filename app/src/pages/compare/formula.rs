@@ -2,6 +2,8 @@
 
 use hysteron_core::effect::{EffectId, Formula};
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 /// What is typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,15 +44,15 @@ impl Typed {
     }
 
     /// Names of the parameters, or what is wrong.
-    pub(super) fn check(&self) -> Result<Vec<String>, String> {
+    pub(super) fn check(&self) -> Result<Vec<String>, Message> {
         if EffectId::own(&self.id()).is_none() {
-            return Err(format!("name: {}", EffectId::OWN_NAMES));
+            return Err(msg!("name: {}", EffectId::OWN_NAMES));
         }
         let formula = Formula {
             name: self.id(),
             text: self.formula.trim().to_owned(),
         };
-        formula.parameters(self.kind).map_err(|e| e.to_string())
+        formula.parameters(self.kind).map_err(Message::from)
     }
 }
 

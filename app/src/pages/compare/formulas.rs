@@ -2,6 +2,8 @@
 
 use egui_plot::{HLine, Line, LineStyle, MarkerShape, PlotPoints, Points};
 use hysteron_core::diagnosis::{Discovery, FoundFormula, Program};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::{brief, with_error};
 
 use super::command::Command;
@@ -94,7 +96,7 @@ impl Compare {
                             with_error(p.value, p.std_error, &p.unit)
                         )));
                         if p.is_told() && p.std_error > 0.0 {
-                            ui.weak(tr(format!("95 %: {}", p.interval())));
+                            ui.weak(tr(msg!("95 %: {}", p.interval())));
                         }
                     });
                 }
@@ -112,7 +114,7 @@ impl Compare {
     ) {
         let symbol = self.force_symbol();
         ui.horizontal_wrapped(|ui| {
-            let title = tr(format!("Add {}", formula.name));
+            let title = tr(msg!("Add {}", Message::name(&formula.name)));
             let add = ui
                 .add_enabled(self.job.is_none(), egui::Button::new(title))
                 .on_hover_text(tr("Add this force and fit it"));
@@ -121,7 +123,7 @@ impl Compare {
                 commands.extend(self.adding(formula));
             }
             equation_ui(ui, &format!("{symbol} = {}", formula.formula), &|_| None);
-            let left = tr(format!("leaves {} × noise", brief(formula.error)));
+            let left = tr(msg!("leaves {} × noise", brief(formula.error)));
             ui.label(egui::RichText::new(left).strong());
         });
     }
@@ -220,6 +222,7 @@ fn front_ui(discovery: &Discovery, ui: &mut egui::Ui) {
         );
     });
     ui.small(tr(
-        "Every formula that was simulated, by the names, numbers and signs in it; the line joins those that leave least for their length.",
+        "Every formula that was simulated, by the names, numbers and signs in it; the line joins those that leave \
+         least for their length.",
     ));
 }

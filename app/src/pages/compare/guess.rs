@@ -2,6 +2,7 @@
 
 use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect::{EffectId, name_of};
+use hysteron_core::msg;
 
 use super::command::Command;
 use super::fingerprint::explained;
@@ -52,13 +53,15 @@ impl Compare {
         commands: &mut Vec<Command>,
     ) {
         ui.strong(tr("Which effect is missing?"));
-        ui.label(tr("A fingerprint is the residual that an effect would leave if it were missing. Find the one that matches, and add that effect."));
+        ui.label(tr(
+            "A fingerprint is the residual that an effect would leave if it were missing. Find the one that matches, \
+             and add that effect."));
         for candidate in self.choices(report) {
             let Some(id) = candidate.effects.first().copied() else {
                 continue;
             };
             ui.horizontal_wrapped(|ui| {
-                let add = egui::Button::new(tr(format!("Add {}", name_of(id))));
+                let add = egui::Button::new(tr(msg!("Add {}", name_of(id))));
                 let add = explained(ui.add_enabled(self.job.is_none(), add), id);
                 targets.note(format!("add:{id}"), ui, &add);
                 if add.clicked() {
@@ -78,7 +81,7 @@ impl Compare {
         let more = hints < LEFT.len();
         let buy = ui.add_enabled(
             more,
-            egui::Button::new(tr(format!("Give me a hint ({PRICE} points)"))),
+            egui::Button::new(tr(msg!("Give me a hint ({} points)", PRICE))),
         );
         targets.note("guess:hint", ui, &buy);
         if buy.clicked() {
@@ -86,7 +89,7 @@ impl Compare {
         }
         let cost = self.guess.cost();
         if cost > 0 {
-            ui.label(tr(format!("Hints have cost {cost} points so far.")));
+            ui.label(tr(msg!("Hints have cost {} points so far.", cost)));
         }
     }
 

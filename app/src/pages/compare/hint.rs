@@ -2,6 +2,8 @@
 
 use hysteron_core::diagnosis::{Candidate, DiscoveryEnd, Reach, StepReport, Verdict};
 use hysteron_core::effect::{EffectId, name_of};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 
 use super::experiment;
 use super::look::Look;
@@ -41,7 +43,7 @@ impl Compare {
             let mut without = self.effects.clone();
             without.retain(|e| e != effect);
             let name = name_of(*effect);
-            return set_effects(format!("{name} is not needed: remove it."), &without);
+            return set_effects(msg!("{} is not needed: remove it.", name), &without);
         }
         match &report.verdict {
             Some(verdict) => self.after(verdict, report),
@@ -53,7 +55,10 @@ impl Compare {
     fn after(&self, verdict: &Verdict, report: &StepReport) -> Hint {
         if let Some(known) = verdict.contradicted.first() {
             let name = &known.name;
-            return Hint::say(format!("Correct the given value of {name} in your model."));
+            return Hint::say(msg!(
+                "Correct the given value of {} in your model.",
+                Message::name(name)
+            ));
         }
         if verdict.missing.iter().any(|class| class.len() > 1) {
             let preview = verdict
@@ -64,7 +69,7 @@ impl Compare {
                 Some(commands) => Hint {
                     sentence:
                         "Only another experiment can tell them apart: see what it would show."
-                            .to_owned(),
+                            .into(),
                     commands,
                 },
                 None => Hint::say("Only another experiment can tell them apart."),
@@ -81,7 +86,7 @@ impl Compare {
                 let with = [self.effects.as_slice(), &[*effect]].concat();
                 let name = name_of(*effect);
                 return set_effects(
-                    format!("Perhaps {name}: add it and see what is left."),
+                    msg!("Perhaps {}: add it and see what is left.", name),
                     &with,
                 );
             }
@@ -109,8 +114,11 @@ impl Compare {
         let discovery = self.discovery()?;
         let found = discovery.found()?;
         let whole = discovery.end == DiscoveryEnd::Explained;
-        let share = if whole { "" } else { "a part of " };
-        let sentence = format!("A formula explains {share}what is left: add it.");
+        let sentence = if whole {
+            "A formula explains what is left: add it."
+        } else {
+            "A formula explains a part of what is left: add it."
+        };
         let Some(super::command::Command::AddOwn(typed)) = self.adding(found) else {
             let with = [self.effects.as_slice(), &[EffectId::own(&found.name)?]].concat();
             return Some(set_effects(sentence, &with));
@@ -120,7 +128,7 @@ impl Compare {
         ids.push(typed.id());
         let set = |field, value| Command::Set("compare", field, value);
         Some(Hint {
-            sentence,
+            sentence: sentence.into(),
             commands: vec![
                 set("own", serde_json::json!(own)),
                 set("effects", serde_json::json!(ids)),
@@ -136,7 +144,7 @@ impl Compare {
         };
         let set = |field, value| Command::Set("compare", field, value);
         Hint {
-            sentence: "Nothing more is missing: compare with what the step before left.".to_owned(),
+            sentence: "Nothing more is missing: compare with what the step before left.".into(),
             commands: vec![
                 set("look", serde_json::json!(look)),
                 set("before", true.into()),
@@ -170,41 +178,49 @@ impl Compare {
 
 /// An effect, and what these data cannot tell apart from it.
 enum Either {
-    One(String),
-    Several(String),
+    One(Message),
+    Several(Message),
 }
 
 fn either(effect: EffectId, card: Option<&Candidate>) -> Either {
     let name = name_of(effect);
     match card.map_or(&[][..], |c| &c.equivalent_to) {
-        [] => Either::One(name.to_owned()),
-        [other] => Either::Several(format!("{name} or {}", name_of(*other))),
-        others => Either::Several(format!("{name} or one of {} others", others.len())),
+        [] => Either::One(name.into()),
+        [other] => Either::Several(Message::list(" or ", [name, name_of(*other)])),
+        others => Either::Several(msg!("{} or one of {} others", name, others.len())),
     }
 }
 
 /// What helps most, and how much that is; it leaves so many per cent of the error.
-fn helps(what: &Either, reach: Reach, left: f64) -> String {
+fn helps(what: &Either, reach: Reach, left: f64) -> Message {
     match (what, reach) {
-        (Either::One(name), Reach::Most) => format!("{name} helps most: add it."),
+        (Either::One(name), Reach::Most) => msg!("{} helps most: add it.", name),
         (Either::Several(names), Reach::Most) => {
-            format!("{names} helps most; this record cannot tell which.")
+            msg!("{} helps most; this record cannot tell which.", names)
         }
         (Either::One(name) | Either::Several(name), Reach::Part) => {
-            format!("{name} helps most, but leaves {left:.0} % of the error.")
+            msg!(
+                "{} helps most, but leaves {} % of the error.",
+                name,
+                fixed(left, 0)
+            )
         }
         (Either::One(name) | Either::Several(name), Reach::Little) => {
-            format!("Nothing fits: even {name} leaves {left:.0} % of the error.")
+            msg!(
+                "Nothing fits: even {} leaves {} % of the error.",
+                name,
+                fixed(left, 0)
+            )
         }
     }
 }
 
-fn set_effects(sentence: String, effects: &[EffectId]) -> Hint {
+fn set_effects(sentence: impl Into<Message>, effects: &[EffectId]) -> Hint {
     let ids: Vec<&str> = effects.iter().map(|e| e.as_str()).collect();
     set(sentence, "effects", serde_json::json!(ids))
 }
 
-fn set(sentence: impl Into<String>, field: &'static str, value: serde_json::Value) -> Hint {
+fn set(sentence: impl Into<Message>, field: &'static str, value: serde_json::Value) -> Hint {
     Hint {
         sentence: sentence.into(),
         commands: vec![Command::Set("compare", field, value)],

@@ -2,6 +2,7 @@
 
 use egui_plot::{HLine, Line, PlotPoints};
 use hysteron_core::diagnosis::{MissingPart, StepReport};
+use hysteron_core::message::Message;
 use hysteron_core::uncertain::titled;
 use hysteron_core::user_model::{Form, forms};
 
@@ -99,8 +100,8 @@ const AXIS_WIDTH: f32 = 60.0;
 fn plot_ui(part: &MissingPart, height: f32, ui: &mut egui::Ui) {
     let size = part.parts.iter().map(|p| p.value.abs()).fold(0.0, f64::max);
     let (x, y) = (
-        titled(&part.axis, &part.axis_unit),
-        titled(&part.what, &part.unit),
+        titled(Message::words(part.axis.clone()), &part.axis_unit).to_string(),
+        titled(Message::words(part.what.clone()), &part.unit).to_string(),
     );
     let id = format!("missing {} {}", part.what, part.axis);
     let chart = Chart::new(id, [x, y], height, AXIS_WIDTH).still();

@@ -35,6 +35,8 @@ mod waterfall;
 mod welcome;
 
 use hysteron_core::diagnosis::Discovery;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use crate::desk::Desk;
 use crate::export::Table;
@@ -68,7 +70,9 @@ impl Compare {
             let name = arrival.name;
             match arrival.bytes {
                 Ok(bytes) => self.open_as(ctx, &name, bytes, arrival.reading),
-                Err(error) => self.refuse(format!("{name}: cannot be read ({error})")),
+                Err(error) => {
+                    self.refuse(msg!("{}: cannot be read ({})", Message::name(name), error));
+                }
             }
         }
         if let Some(sentence) = self.files.refused() {

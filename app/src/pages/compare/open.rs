@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use hysteron_core::measurement::FoundColumn;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::user_model::UserModel;
 
 use super::formula::Typed;
@@ -56,7 +58,7 @@ impl Compare {
     }
 
     /// Asks which column of a file is what, unless that is what was asked.
-    fn ask(&mut self, opening: Opening, reason: String, columns: Vec<FoundColumn>) {
+    fn ask(&mut self, opening: Opening, reason: Message, columns: Vec<FoundColumn>) {
         match &mut self.form {
             Some(form) if opening.from_form => form.error = Some(reason),
             form => {
@@ -72,7 +74,7 @@ impl Compare {
     }
 
     /// Says why a file is not taken, where it is seen.
-    pub(super) fn refuse(&mut self, sentence: String) {
+    pub(super) fn refuse(&mut self, sentence: Message) {
         let place = match &mut self.form {
             Some(form) => &mut form.error,
             None => &mut self.message,
@@ -146,20 +148,22 @@ impl Compare {
     /// Takes a model and begins anew with it.
     fn open_model(&mut self, ctx: &egui::Context, name: &str, bytes: &[u8]) {
         let read = str::from_utf8(bytes)
-            .map_err(|_| "a model must be UTF-8 text".to_owned())
-            .and_then(|text| UserModel::from_toml(text).map_err(|e| e.to_string()));
+            .map_err(|_| "a model must be UTF-8 text".into())
+            .and_then(|text| UserModel::from_toml(text).map_err(Message::from));
         match (read, &self.measurement) {
-            (Err(error), _) => self.refuse(format!("{name}, {error}")),
+            (Err(error), _) => self.refuse(msg!("{}, {}", Message::name(name), error)),
             (Ok(model), Some(measurement)) if model.kind != measurement.kind => {
-                self.refuse(format!(
-                    "{name} is the model of a {}, but {} is the measurement of a {}.",
+                self.refuse(msg!(
+                    "{} is the model of a {}, but {} is the measurement of a {}.",
+                    Message::name(name),
                     model.kind.name(),
-                    measurement.name,
+                    Message::name(&measurement.name),
                     measurement.kind.name()
                 ));
             }
-            (Ok(_), None) => self.refuse(format!(
-                "{name} is a model, which goes with a measurement: open the measurement first."
+            (Ok(_), None) => self.refuse(msg!(
+                "{} is a model, which goes with a measurement: open the measurement first.",
+                Message::name(name)
             )),
             (Ok(model), Some(_)) => {
                 self.files.taken(name, &Reading::default());
@@ -228,7 +232,7 @@ impl Compare {
             self.shown = Some(self.effects.clone());
             self.follow_at_once();
         } else if let Some(measurement) = &self.measurement {
-            self.progress = (0.0, "Starting".to_owned());
+            self.progress = (0.0, "Starting".into());
             // It may be on its way already.
             let begun = earlier.filter(|(effects, _)| *effects == self.effects);
             self.job = Some(begun.map_or_else(

@@ -1,6 +1,8 @@
 //! The user's own effect as a formula.
 
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use super::command::Command;
 use super::formula::Typed;
@@ -51,10 +53,10 @@ pub(super) fn ui(
         let checked = typed.check();
         let id = typed.id();
         if checked.is_ok() && id != typed.name {
-            ui.label(tr(format!("In the model it is called {id}.")));
+            ui.label(tr(msg!("In the model it is called {}.", id)));
         }
         match &checked {
-            Ok(names) => ui.label(tr(format!("To be fitted: {}", names.join(", ")))),
+            Ok(names) => ui.label(tr(msg!("To be fitted: {}", Message::name(names.join(", "))))),
             Err(error) => ui.colored_label(ui.visuals().warn_fg_color, tr(error)),
         };
         let ready = checked.is_ok() && page.job.is_none() && page.report().is_some();

@@ -3,6 +3,8 @@
 use hysteron_core::by_hand::ByHand;
 use hysteron_core::diagnosis::{Parameter, Status, StepReport};
 use hysteron_core::effect::{self, Effect, name_of};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::report::baseline;
 use hysteron_core::uncertain::{NORMAL_95, quantity, with_error};
 
@@ -66,7 +68,9 @@ pub(super) fn ui(
             } else if known {
                 ui.small(tr("Drag a slider to set a value by hand and see what it does to the residual."));
             }
-            ui.small(tr("With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; hollow where 0 is in them."));
+            ui.small(tr(
+                "With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; hollow where \
+                 0 is in them."));
         });
 }
 
@@ -112,19 +116,20 @@ fn equations_ui(
 }
 
 /// The fitted value with its error, or the one that is set by hand.
-fn value_text(p: &Parameter, value: f64) -> String {
+fn value_text(p: &Parameter, value: f64) -> Message {
     if value == p.value {
         with_error(p.value, p.std_error, &p.unit)
     } else {
-        quantity(value, &p.unit)
+        quantity(value, &p.unit).into()
     }
 }
 
 /// Its symbol, value, meaning and interval.
 fn row_ui(p: &Parameter, value: f64, marked: bool, ui: &mut egui::Ui) {
+    let label = Message::words(p.label.clone());
     let hover = match p.effect {
-        Some(effect) => format!("{}, {}", p.label, name_of(effect)),
-        None => format!("{}, of the baseline to which effects are added", p.label),
+        Some(effect) => msg!("{}, {}", label, name_of(effect)),
+        None => msg!("{}, of the baseline to which effects are added", label),
     };
     let text = value_text(p, value);
     ui.horizontal(|ui| {

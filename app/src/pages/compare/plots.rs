@@ -7,6 +7,8 @@ use egui_plot::{
 };
 use hysteron_core::diagnosis::{Finding, ReplayChannel};
 use hysteron_core::measurement::{Channel, Measurement, Quantity};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::uncertain::titled;
 
 use super::by_hand::Hand;
@@ -205,7 +207,7 @@ fn signal_plot(
     finding: Option<&Finding>,
     size: Size,
 ) {
-    let label = titled(output.title(), &output.unit);
+    let label = titled(Message::name(output.title()), &output.unit).to_string();
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let alone = measurement.outputs.len() == 1;
@@ -264,7 +266,8 @@ fn residual_plot(
     finding: Option<&Finding>,
     size: Size,
 ) {
-    let label = titled(&format!("{} - model", output.title()), &output.unit);
+    let name = msg!("{} - model", Message::name(output.title()));
+    let label = titled(name, &output.unit).to_string();
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
         pairs.map(|(y, m)| y - m).collect()
@@ -362,7 +365,7 @@ fn is_about(finding: &Finding, output: &Channel) -> bool {
         Quantity::Position => "position",
         _ => "velocity",
     };
-    finding.text.contains(&format!("{word} error"))
+    finding.text.to_string().contains(&format!("{word} error"))
 }
 
 /// Says at the first of its stretches on screen how much of the error is in the selected finding; on a `ground` that
@@ -375,7 +378,10 @@ fn mark(plot: &mut egui_plot::PlotUi<'_>, finding: Option<&Finding>, ground: egu
     let (low, high) = (bounds.min(), bounds.max());
     let seen = |s: &&(f64, f64)| s.1 >= low[0] && s.0 <= high[0];
     if let Some(span) = finding.spans.iter().find(seen) {
-        let text = format!("{:.0} % of the error", 100.0 * finding.share_of_error);
+        let text = msg!(
+            "{} % of the error",
+            fixed(100.0 * finding.share_of_error, 0)
+        );
         // Words that begin in the right half might not end before the plot does.
         let from = span.0.max(low[0]);
         let (x, anchor) = if from < f64::midpoint(low[0], high[0]) {

@@ -2,6 +2,8 @@
 
 use egui::RichText;
 use hysteron_core::effect::{EffectId, VISCOUS_FRICTION, name_of};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::mystery::{Answer, Compared, Mark, Reveal, Row};
 use hysteron_core::uncertain::{quantity, with_error, written_like};
 
@@ -87,7 +89,9 @@ fn word_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    ui.label(tr("The truth about this record is sealed inside it. Add what is missing until only noise is left; then enter the password."));
+    ui.label(tr(
+        "The truth about this record is sealed inside it. Add what is missing until only noise is left; then enter \
+         the password."));
     let (mut word, mut legible) = (sealed.word.clone(), sealed.legible);
     let asked = ui.horizontal_wrapped(|ui| {
         let label = ui.label(tr("Password"));
@@ -130,9 +134,12 @@ fn revealed_ui(
 ) {
     let cost = f64::from(page.guess.cost());
     let points = (reveal.points() - cost).max(0.0);
-    theme::answer_ui(ui, &format!("{points:.0} of 100 points."));
+    theme::answer_ui(ui, msg!("{} of 100 points.", fixed(points, 0)));
     if cost > 0.0 {
-        ui.label(tr(format!("Hints have cost {cost:.0} points so far.")));
+        ui.label(tr(msg!(
+            "Hints have cost {} points so far.",
+            fixed(cost, 0)
+        )));
     }
     if Some(effects) != page.shown.as_deref() {
         ui.horizontal_wrapped(|ui| {
@@ -165,16 +172,17 @@ fn effects_ui(reveal: &Reveal, ui: &mut egui::Ui) {
     for Row { effect, mark } in &reveal.rows {
         let name = name_of(*effect);
         let (color, text) = match mark {
-            Mark::Right => (theme::NOISE, format!("{name}: found")),
+            Mark::Right => (theme::NOISE, msg!("{}: found", name)),
             Mark::Alike(other) => (
                 theme::NOISE,
-                format!(
-                    "{name}: found as {}, which this record cannot tell from it",
+                msg!(
+                    "{}: found as {}, which this record cannot tell from it",
+                    name,
                     name_of(*other)
                 ),
             ),
-            Mark::Missed => (theme::MODEL, format!("{name}: missed")),
-            Mark::Wrong => (theme::MODEL, format!("{name}: wrong, it is not there")),
+            Mark::Missed => (theme::MODEL, msg!("{}: missed", name)),
+            Mark::Wrong => (theme::MODEL, msg!("{}: wrong, it is not there", name)),
         };
         ui.label(RichText::new(tr(text)).color(theme::readable(ui, color)));
     }
@@ -190,13 +198,13 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
         for number in &reveal.numbers {
             let [name, truth, found, error, marks] = cells(number);
             ui.strong(tr(name));
-            ui.label(tr(format!("Truth {truth}, your model {found}.")));
-            let error = if error.is_empty() {
-                error
+            ui.label(tr(msg!("Truth {}, your model {}.", truth, found)));
+            let marks = msg!("Marks {}.", marks);
+            ui.label(tr(if error.is_empty() {
+                marks
             } else {
-                format!("Error {error}. ")
-            };
-            ui.label(tr(format!("{error}Marks {marks}.")));
+                msg!("Error {}.", error).and(marks)
+            }));
         }
         return;
     }
@@ -221,27 +229,27 @@ fn numbers_ui(reveal: &Reveal, ui: &mut egui::Ui) {
 }
 
 /// Name, truth, value of the model, error and marks of a number.
-fn cells(number: &Compared) -> [String; 5] {
+fn cells(number: &Compared) -> [Message; 5] {
     let owner = number.effect.map_or("baseline", name_of);
     // The truth is written as what was found, so that their digits can be compared.
-    let (truth, found) = match number.found {
+    let (truth, found): (Message, Message) = match number.found {
         Some((value, error)) => (
-            written_like(number.truth, (value, error), &number.unit),
+            written_like(number.truth, (value, error), &number.unit).into(),
             with_error(value, error, &number.unit),
         ),
         None => (
-            quantity(number.truth, &number.unit),
-            "not in your model".to_owned(),
+            quantity(number.truth, &number.unit).into(),
+            "not in your model".into(),
         ),
     };
     // 0.0 rather than -0.0.
     let percent = number.error().map(|e| (1000.0 * e).round() / 10.0 + 0.0);
     [
-        format!("{} ({owner})", number.symbol),
+        msg!("{} ({})", Message::name(&number.symbol), owner),
         truth,
         found,
-        percent.map_or_else(String::new, |p| format!("{p:+.1} %")),
-        format!("{:.0} %", 100.0 * number.mark),
+        percent.map_or_else(Message::default, |p| format!("{p:+.1} %").into()),
+        format!("{:.0} %", 100.0 * number.mark).into(),
     ]
 }
 
@@ -249,10 +257,14 @@ fn rule_ui(reveal: &Reveal, ui: &mut egui::Ui) {
     let [effects, most_effects] = reveal.effect_points;
     let [numbers, most_numbers] = reveal.number_points;
     ui.add_space(8.0);
-    ui.label(tr(format!(
-        "{effects:.0} of {most_effects:.0} points for the effects: the share of right ones among all that are hidden or were added."
+    ui.label(tr(msg!(
+        "{} of {} points for the effects: the share of right ones among all that are hidden or were added.",
+        fixed(effects, 0),
+        fixed(most_effects, 0)
     )));
-    ui.label(tr(format!(
-        "{numbers:.0} of {most_numbers:.0} points for the numbers: full marks within 5 % or two standard errors, none 50 % beyond."
+    ui.label(tr(msg!(
+        "{} of {} points for the numbers: full marks within 5 % or two standard errors, none 50 % beyond.",
+        fixed(numbers, 0),
+        fixed(most_numbers, 0)
     )));
 }

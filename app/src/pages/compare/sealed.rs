@@ -1,6 +1,7 @@
 //! The sealed truth of a mystery, and what was revealed of it.
 
 use hysteron_core::effect::EffectId;
+use hysteron_core::message::Message;
 use hysteron_core::mystery::Reveal;
 use hysteron_work::tasks::RevealTask;
 
@@ -16,7 +17,7 @@ pub(super) struct Sealed {
     /// Whether the word can be read while it is typed.
     pub legible: bool,
     pub(super) job: Option<Job<RevealTask>>,
-    pub(super) message: Option<String>,
+    pub(super) message: Option<Message>,
     /// The truth beside the model with these effects.
     pub(super) revealed: Option<(Vec<EffectId>, Reveal)>,
 }

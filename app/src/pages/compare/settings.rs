@@ -2,6 +2,8 @@
 
 use hysteron_core::effect::{self, EffectId};
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::mystery::Mystery;
 use hysteron_core::user_model::UserModel;
 use hysteron_work::content::Content;
@@ -48,11 +50,11 @@ impl Settable for Compare {
         ctx: &egui::Context,
         settings: Settings,
         _desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         let (settings, present) = (&settings, self.set_to());
         let other = self.other_file(settings, &present)?;
         if settings.effects.len() > MOST_EFFECTS || settings.own.len() > MOST_EFFECTS {
-            return Err(format!("A link may add {MOST_EFFECTS} effects."));
+            return Err(msg!("A link may add {} effects.", MOST_EFFECTS));
         }
         if settings.file.is_none() && settings.mystery.is_none() {
             if let Some(name) = &settings.model {
@@ -100,9 +102,9 @@ impl Settable for Compare {
 
 impl Compare {
     /// The measurement of `settings`, if it is another than is open at `present`.
-    fn other_file(&self, settings: &Settings, present: &Settings) -> Result<Option<Held>, String> {
+    fn other_file(&self, settings: &Settings, present: &Settings) -> Result<Option<Held>, Message> {
         match (&settings.file, &settings.mystery) {
-            (Some(_), Some(_)) => Err("A link may open a file or a mystery, not both.".to_owned()),
+            (Some(_), Some(_)) => Err("A link may open a file or a mystery, not both.".into()),
             (Some(name), None) if settings.file != present.file => {
                 let built_in = BUILT_IN.iter().find(|b| b.file.id == name);
                 let file = built_in.map(|b| Held::from(&b.file));
@@ -124,7 +126,7 @@ impl Compare {
     }
 
     /// What is set as soon as a measurement of this kind is open.
-    fn awaited(&self, settings: &Settings, kind: Kind) -> Result<Awaited, String> {
+    fn awaited(&self, settings: &Settings, kind: Kind) -> Result<Awaited, Message> {
         Ok(Awaited {
             meant: settings.meant(self.model_of(settings, kind)?)?,
             settings: settings.clone(),
@@ -133,7 +135,7 @@ impl Compare {
     }
 
     /// The user's model as in `settings`: that of a file, and the effects of their own.
-    fn model_of(&self, settings: &Settings, kind: Kind) -> Result<Option<UserModel>, String> {
+    fn model_of(&self, settings: &Settings, kind: Kind) -> Result<Option<UserModel>, Message> {
         let mut model = match &settings.model {
             Some(name) => {
                 let model = self.held_model(name)?.clone();
@@ -149,7 +151,7 @@ impl Compare {
         Ok(Some(model))
     }
 
-    fn held_model(&self, name: &str) -> Result<&UserModel, String> {
+    fn held_model(&self, name: &str) -> Result<&UserModel, Message> {
         let model = self.files.held_model(name);
         model.ok_or_else(|| not_enclosed(name))
     }

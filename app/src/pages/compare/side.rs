@@ -5,6 +5,8 @@ use hysteron_core::diagnosis::{Candidate, StepReport};
 use hysteron_core::effect;
 use hysteron_core::effect::{EffectId, name_of};
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::with_error;
 
 use super::answer::times_noise;
@@ -78,7 +80,7 @@ pub(super) fn file_ui(
     ui.horizontal_wrapped(|ui| {
         if let Some(m) = &page.measurement {
             ui.strong(tr(&m.name));
-            ui.label(tr(format!("{} samples", m.len())));
+            ui.label(tr(msg!("{} samples", m.len())));
         }
         if ui.button(tr("Open another")).clicked() {
             commands.push(Command::Close);
@@ -125,7 +127,7 @@ pub(super) fn file_ui(
             commands.push(Command::ExportReport);
         }
         if let Some(name) = &page.model_file {
-            ui.label(tr(format!("Begins with {name}")));
+            ui.label(tr(msg!("Begins with {}", name)));
             if ui.small_button(tr("Forget it")).clicked() {
                 commands.push(Command::DropModel);
             }
@@ -237,7 +239,7 @@ fn card_ui(
                 .collect();
             ui.colored_label(
                 ui.visuals().warn_fg_color,
-                tr(format!(
+                tr(msg!(
                     "These data cannot tell it apart from {}.",
                     names.join(" or ")
                 )),
@@ -252,7 +254,11 @@ fn card_ui(
                     ui.horizontal_wrapped(|ui| {
                         equation_ui(ui, &p.name, &|_| None);
                         let value = with_error(p.value, p.std_error, &p.unit);
-                        ui.label(tr(format!("({}) = {value}", p.label)));
+                        ui.label(tr(msg!(
+                            "({}) = {}",
+                            Message::words(p.label.clone()),
+                            value
+                        )));
                     });
                 }
             });
@@ -270,13 +276,13 @@ fn choice_ui(
 ) {
     let add = ui.add_enabled(
         page.job.is_none(),
-        egui::Button::new(tr(format!("Add {}", name_of(id)))),
+        egui::Button::new(tr(msg!("Add {}", name_of(id)))),
     );
     targets.note(format!("add:{id}"), ui, &add);
     if add.clicked() {
         commands.push(Command::Add(id));
     }
-    ui.label(RichText::new(tr(format!("leaves {} × noise", times_noise(error)))).strong());
+    ui.label(RichText::new(tr(msg!("leaves {} × noise", times_noise(error)))).strong());
     if report.fingerprints.iter().any(|f| f.effect == id) {
         let chosen = page.look == Look::Fingerprint && page.chosen() == Some(id);
         let show = ui

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use hysteron_core::diagnosis::{Limits, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Measurement;
+use hysteron_core::message::Message;
 use hysteron_core::user_model::UserModel;
 use hysteron_work::reading::Reading;
 use hysteron_work::tasks::{ExperimentTask, Source};
@@ -50,8 +51,8 @@ pub struct Compare {
     /// How much of it is there.
     pub(super) parts: Parts,
     pub(super) job: Option<Job>,
-    pub(super) progress: (f64, String),
-    pub(super) message: Option<String>,
+    pub(super) progress: (f64, Message),
+    pub(super) message: Option<Message>,
     /// Effects that were taken back, the next one to come again first.
     pub(super) undone: Vec<EffectId>,
     /// What the plots show, and whether beside the step before.
@@ -80,7 +81,7 @@ pub struct Compare {
     pub(super) sealed: Option<Sealed>,
     pub(super) files: Files,
     /// What saving a file has to say.
-    pub(super) saved: (Sender<String>, Receiver<String>),
+    pub(super) saved: (Sender<Message>, Receiver<Message>),
 }
 
 impl Default for Compare {
@@ -100,7 +101,7 @@ impl Default for Compare {
             shown: None,
             parts: Parts::default(),
             job: None,
-            progress: (0.0, String::new()),
+            progress: (0.0, Message::default()),
             message: None,
             undone: Vec::new(),
             look: Look::default(),

@@ -2,6 +2,7 @@
 
 use hysteron_core::diagnosis::Discovery;
 use hysteron_core::effect::{EffectId, find};
+use hysteron_core::message::Message;
 use hysteron_work::tasks::DiscoveryTask;
 
 use crate::jobs::Job;
@@ -10,7 +11,7 @@ use crate::jobs::Job;
 pub(super) struct Searching {
     pub(super) effects: Vec<EffectId>,
     pub(super) job: Job<DiscoveryTask>,
-    pub(super) progress: (f64, String),
+    pub(super) progress: (f64, Message),
 }
 
 /// What is looked for, and what was found.

@@ -3,6 +3,7 @@
 use egui::Color32;
 use hysteron_core::diagnosis::StepReport;
 use hysteron_core::effect::{EffectId, name_of};
+use hysteron_core::msg;
 
 use super::answer::times_noise;
 use super::command::Command;
@@ -117,14 +118,14 @@ fn back_and_forth_ui(
 ) {
     ui.horizontal_wrapped(|ui| {
         if let Some(last) = page.effects.last() {
-            let undo = ui.button(tr(format!("Take back {}", name_of(*last))));
+            let undo = ui.button(tr(msg!("Take back {}", name_of(*last))));
             targets.note("undo", ui, &undo);
             if undo.clicked() {
                 commands.push(Command::Undo);
             }
         }
         if let Some(next) = way.get(page.effects.len()) {
-            let redo = ui.button(tr(format!("Put {} back", name_of(*next))));
+            let redo = ui.button(tr(msg!("Put {} back", name_of(*next))));
             targets.note("redo", ui, &redo);
             if redo.clicked() {
                 commands.push(Command::Redo);

@@ -10,6 +10,7 @@ use crate::language::tr;
 use crate::layout;
 use crate::recent::{Recents, measurement};
 use crate::theme;
+use hysteron_core::msg;
 
 /// Height of the picture on a card, points, and as a share of the window; how often the input switches in it, and most
 /// samples.
@@ -32,7 +33,7 @@ fn card_ui(
     let size = egui::vec2(ui.available_width(), 36.0);
     let button = ui.add_sized(
         size,
-        egui::Button::new(tr(format!("Open {}", built_in.file.id))),
+        egui::Button::new(tr(msg!("Open {}", built_in.file.id))),
     );
     targets.note(format!("builtin:{}", built_in.file.id), ui, &button);
     if button.clicked() {
@@ -117,7 +118,9 @@ impl Compare {
         theme::scroll("compare_welcome").show(ui, |ui| {
             ui.add_space(16.0);
             theme::answer_ui(ui, "What is missing from the model?");
-            ui.label(tr("Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which physical effect would explain the rest."));
+            ui.label(tr(
+                "Take a measurement. Hysteron fits the simplest model to it, shows where that fails, and which \
+                 physical effect would explain the rest."));
             self.message_ui(ui, commands);
             ui.add_space(12.0);
             if ui.available_width() < layout::NARROW {
@@ -141,7 +144,9 @@ impl Compare {
             if let Some(recent) = recent.ui(ui, measurement, targets) {
                 commands.push(Command::Reopen(recent));
             }
-            ui.small(tr("Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u [1],y [1] for a process. For any other file you say which column is what."));
+            ui.small(tr(
+                "Its first line names the columns with units: t [s],u [N m],x1 [rad],v1 [rad/s] for a drive, t [s],u \
+                 [1],y [1] for a process. For any other file you say which column is what."));
         });
     }
 }

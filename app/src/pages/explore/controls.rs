@@ -1,6 +1,7 @@
 //! What can be set: figure, plant, relay, noise, playback.
 
 use hysteron_core::figures::figures;
+use hysteron_core::msg;
 use hysteron_core::relay::Relay;
 use hysteron_core::simulate::Noise;
 
@@ -43,7 +44,7 @@ impl Explore {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
                     .add(
-                        egui::Button::new(tr(format!("Fig. {}", figure.number)))
+                        egui::Button::new(tr(msg!("Fig. {}", figure.number)))
                             .selected(chosen)
                             .frame(true),
                     )
@@ -65,7 +66,9 @@ impl Explore {
         let normal = Relay::default();
         slider(ui, &mut relay.gain, normal.gain, 1.0, 0.1..=5.0, "gain k")
             .on_hover_text(tr("How strongly the relay pushes"));
-        slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text(tr("How far past zero the output must go before the relay switches; also by dragging the dashed line in the Nyquist plot"));
+        slider(ui, &mut relay.hysteresis, normal.hysteresis, 1.0, 0.0..=1.0, "hysteresis ε").on_hover_text(tr(
+            "How far past zero the output must go before the relay switches; also by dragging the dashed line in the \
+             Nyquist plot"));
         asymmetry_slider(ui, &mut relay.asymmetry, normal.asymmetry);
         delay_slider(ui, &mut relay.delay, normal.delay, 2.0);
         let noise = &mut self.input.noise;

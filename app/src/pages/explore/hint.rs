@@ -1,6 +1,8 @@
 //! What to try next with the loop that is set.
 
 use hysteron_core::explore::{ExploreData, ExploreInput};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use crate::command::Command;
 use crate::page::Hint;
@@ -24,14 +26,20 @@ pub(super) fn hint(input: &ExploreInput, data: &ExploreData) -> Hint {
             waiting(
                 input,
                 narrow,
-                format!("Narrow the hysteresis to ε = {narrow}: does it oscillate then?"),
+                msg!(
+                    "Narrow the hysteresis to ε = {}: does it oscillate then?",
+                    narrow
+                ),
             )
         } else {
             let wait = rounded(FIRST * input.relay.gain);
             waiting(
                 input,
                 wait,
-                format!("Give the relay a hysteresis of ε = {wait}: then it no longer chatters."),
+                msg!(
+                    "Give the relay a hysteresis of ε = {}: then it no longer chatters.",
+                    wait
+                ),
             )
         };
     };
@@ -47,19 +55,21 @@ pub(super) fn hint(input: &ExploreInput, data: &ExploreData) -> Hint {
             waiting(
                 input,
                 wide,
-                format!("Widen the hysteresis to ε = {wide}: does the describing function still hold?"),
+                msg!("Widen the hysteresis to ε = {}: does the describing function still hold?", wide),
             )
         }
         _ => Hint {
-            sentence: "Where does the describing function hold, and where does the oscillation end? See it for two parameters at once."
-                .to_owned(),
+            sentence:
+                "Where does the describing function hold, and where does the oscillation end? See it for two \
+                 parameters at once."
+                .into(),
             commands: vec![Command::Go("maps")],
         },
     }
 }
 
 /// The same loop with another hysteresis.
-fn waiting(input: &ExploreInput, eps: f64, sentence: String) -> Hint {
+fn waiting(input: &ExploreInput, eps: f64, sentence: Message) -> Hint {
     let mut input = input.clone();
     input.relay.hysteresis = eps;
     Hint {

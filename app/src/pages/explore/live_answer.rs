@@ -1,5 +1,6 @@
 //! The answer of a part of the page that is computed while its sliders move.
 
+use hysteron_core::message::Message;
 use hysteron_work::tasks::Task;
 
 use crate::jobs::Runs;
@@ -11,7 +12,7 @@ use crate::theme;
 pub fn ui<I: Clone + PartialEq, T: Runs>(
     ui: &mut egui::Ui,
     live: &Live<I, T>,
-    words: impl Fn(&I, &<T as Task>::Report) -> String,
+    words: impl Fn(&I, &<T as Task>::Report) -> Message,
 ) {
     if let Some(message) = live.message() {
         ui.colored_label(ui.visuals().warn_fg_color, tr(message));

@@ -18,6 +18,7 @@ use std::collections::VecDeque;
 
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
 use hysteron_core::figures::{Check, checks, figures};
+use hysteron_core::message::Message;
 
 use crate::desk::Desk;
 use crate::export::Table;
@@ -67,9 +68,9 @@ pub struct Explore {
     /// A scenario that is being read, what was read, and why nothing was.
     reading: Option<Job<ScenarioTask>>,
     opened: Option<ScenarioReport>,
-    message: Option<String>,
+    message: Option<Message>,
     /// What the page does not show of the scenario that was opened last.
-    left_out: Option<String>,
+    left_out: Option<Message>,
 }
 
 /// What the page is about.
@@ -147,10 +148,10 @@ impl View for Explore {
             state["busy"] = true.into();
         }
         if let Some(message) = &self.message {
-            state["message"] = message.as_str().into();
+            state["message"] = message.to_string().into();
         }
         if let Some(left_out) = &self.left_out {
-            state["left_out"] = left_out.as_str().into();
+            state["left_out"] = left_out.to_string().into();
         }
         state
     }

@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 
 use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, PlotTransform, Points, Text};
 use hysteron_core::explore::ExploreData;
+use hysteron_core::message::fixed;
+use hysteron_core::msg;
 use hysteron_core::relay::Relay;
 
 use crate::language::tr;
@@ -104,7 +106,7 @@ impl Nyquist {
                         .radius(8.0)
                         .shape(MarkerShape::Square),
                 );
-                let text = format!("S: margin φ = {:.1}°", phi.to_degrees());
+                let text = tr(msg!("S: margin φ = {}°", fixed(phi.to_degrees(), 1)));
                 // Above it: below the line stands the amplitude.
                 let above = [at[0] - 0.08 * view, at[1] + 0.08 * view];
                 plot.text(label("S", text, above).anchor(egui::Align2::LEFT_BOTTOM));

@@ -1,5 +1,7 @@
 //! Scenarios from files: they set the page.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_work::tasks::{ScenarioReport, ScenarioTask};
 
 use super::Explore;
@@ -26,7 +28,7 @@ impl Explore {
             match text {
                 Ok(text) => self.reading = Some(Job::run(ctx, ScenarioTask(text))),
                 Err(error) => {
-                    self.message = Some(format!("{}: cannot be read ({error})", arrival.name));
+                    self.message = Some(msg!("{}: cannot be read ({})", arrival.name, error));
                 }
             }
         }
@@ -35,10 +37,8 @@ impl Explore {
                 self.message = None;
                 let keys = report.left_out.join(", ");
                 self.left_out = (!keys.is_empty()).then(|| {
-                    format!(
-                        "Explore shows as much as the cycle needs. Of the run in the file it leaves out: {keys}. The \
-                         command line has it: hysteron simulate."
-                    )
+                    msg!("Explore shows as much as the cycle needs. Of the run in the file it leaves out: {}. The \
+                         command line has it: hysteron simulate.", Message::name(keys))
                 });
                 self.opened = Some(report.report);
             }

@@ -1,5 +1,7 @@
 //! The plant: chosen, or typed as a formula. What cannot be read is explained and changes nothing.
 
+use hysteron_core::message::fixed;
+use hysteron_core::msg;
 use hysteron_core::plant::{TransferFunction, parse, presets};
 
 use crate::language::tr;
@@ -45,7 +47,7 @@ impl PlantEditor {
         }
         if let Some(error) = &self.error {
             ui.colored_label(ui.visuals().warn_fg_color, tr(error));
-            ui.small(tr(format!("Still showing P(s) = {}", formula(plant))));
+            ui.small(tr(msg!("Still showing P(s) = {}", formula(plant))));
             if ui.button(tr("Back to this plant")).clicked() {
                 self.error = None;
                 self.read = None;
@@ -116,10 +118,10 @@ fn describe_ui(ui: &mut egui::Ui, plant: &TransferFunction) {
             .iter()
             .map(|z| root(z.re, z.im))
             .collect::<Vec<_>>();
-        ui.label(tr(format!("poles [1/s]: {}", list(&poles))));
-        ui.label(tr(format!("zeros [1/s]: {}", list(&zeros))));
-        ui.label(tr(format!("gain P(0): {:.4}", plant.dc_gain())));
-        ui.label(tr(format!("dead time: {} s", plant.dead_time)));
+        ui.label(tr(msg!("poles [1/s]: {}", list(&poles))));
+        ui.label(tr(msg!("zeros [1/s]: {}", list(&zeros))));
+        ui.label(tr(msg!("gain P(0): {}", fixed(plant.dc_gain(), 4))));
+        ui.label(tr(msg!("dead time: {} s", plant.dead_time)));
     });
 }
 

@@ -1,6 +1,8 @@
 //! What is set on the page, besides the loop.
 
 use hysteron_core::figures::figures;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use serde::{Deserialize, Serialize};
 
 use super::Explore;
@@ -51,16 +53,16 @@ impl Settable for Explore {
         _ctx: &egui::Context,
         settings: Settings,
         desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         if let Some(number) = settings.figure
             && figures().iter().all(|f| f.number != number)
         {
-            return Err(format!("There is no figure {number} on this page."));
+            return Err(msg!("There is no figure {} on this page.", number));
         }
         (settings.on_off).check(settings.controller, &desk.relay_loop)?;
         settings.servo.check()?;
         if !(0.0..=MOST_PLAY).contains(&settings.play) {
-            return Err("The half gap of the play must be 0 to 1000.".to_owned());
+            return Err("The half gap of the play must be 0 to 1000.".into());
         }
         self.theory.play = settings.play;
         self.controller = settings.controller;

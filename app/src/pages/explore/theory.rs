@@ -3,6 +3,8 @@
 use egui_plot::{HLine, Line, LineStyle, Points};
 use hysteron_core::drive::{LoopTheory, loop_theory};
 use hysteron_core::explore::{ExploreData, ExploreInput};
+use hysteron_core::message::fixed;
+use hysteron_core::msg;
 
 use crate::language::{tr, tr_number};
 use crate::theme;
@@ -67,8 +69,11 @@ impl Theory {
                     .radius(5.0),
             );
         });
-        ui.label(tr(format!(
-            "By (3) h = {h:.6} s; there -Hₕ(-1) = {value:.6}, and ε/k = {level:.6}: the same equation in z = -1."
+        ui.label(tr(msg!(
+            "By (3) h = {} s; there -Hₕ(-1) = {}, and ε/k = {}: the same equation in z = -1.",
+            fixed(h, 6),
+            fixed(value, 6),
+            fixed(level, 6)
         )));
     }
 

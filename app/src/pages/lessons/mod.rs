@@ -7,6 +7,7 @@ use crate::layout;
 use crate::lessons::{self, Lesson};
 use crate::page::{Page, Settable, View};
 use crate::theme;
+use hysteron_core::message::Message;
 
 /// The page.
 #[derive(Default)]
@@ -23,7 +24,8 @@ impl View for Lessons {
             theme::scroll("lessons").show(ui, |ui| {
                 ui.add_space(6.0);
                 theme::answer_ui(ui, "What can a relay teach in ten minutes?");
-                ui.label(tr("Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
+                ui.label(tr(
+                    "Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
                 ui.add_space(8.0);
                 let all: Vec<_> = lessons::all().enumerate().collect();
                 if ui.available_width() < layout::NARROW {
@@ -61,7 +63,7 @@ impl Settable for Lessons {
         _ctx: &egui::Context,
         _settings: serde_json::Value,
         _desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         Ok(())
     }
 }

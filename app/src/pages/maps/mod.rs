@@ -7,6 +7,8 @@ mod words;
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Map, MapInput, Outcome, Parameter, Quantity};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 
 use crate::command::Command;
 use crate::desk::Desk;
@@ -39,7 +41,7 @@ pub struct Maps {
     started: Option<MapInput>,
     map: Map,
     job: Option<Job<MapTask>>,
-    message: Option<String>,
+    message: Option<Message>,
     picture: Picture,
 }
 
@@ -66,7 +68,7 @@ impl Maps {
         }
         if self.started.as_ref() != Some(&wanted) {
             self.started = Some(wanted.clone());
-            self.message = wanted.validate().err().map(|e| e.to_string());
+            self.message = wanted.validate().err().map(Message::from);
             self.job = None;
             if self.message.is_none() {
                 self.map = Map::new(wanted.size);
@@ -98,9 +100,10 @@ impl Maps {
         if let Some(message) = &self.message {
             ui.colored_label(ui.visuals().warn_fg_color, tr(message));
         }
-        theme::answer_ui(ui, &self.answer());
+        theme::answer_ui(ui, self.answer());
         theme::running_text(ui, |ui| {
-            ui.label(tr("Click a point to set it in Explore. Try another quantity: where is the describing function worst?"));
+            ui.label(tr(
+                "Click a point to set it in Explore. Try another quantity: where is the describing function worst?"));
             if self.job.is_some() {
                 motion::busy_ui(ui);
                 ui.label(format!("{:.0} %", 100.0 * self.map.share()));
@@ -108,32 +111,32 @@ impl Maps {
         });
     }
 
-    fn answer(&self) -> String {
+    fn answer(&self) -> Message {
         let values = self.map.values(self.quantity);
         let (Some(least), Some(most)) = (values.first(), values.last()) else {
             return match self.map.share() {
-                0.0 => "Computing the first cycles ...".to_owned(),
-                _ => "None of these loops oscillates.".to_owned(),
+                0.0 => "Computing the first cycles ...".into(),
+                _ => "None of these loops oscillates.".into(),
             };
         };
         let silent = self.map.silent_share();
         let tail = if silent > 0.0 {
-            format!(" {:.0} % of these loops do not oscillate.", 100.0 * silent)
+            msg!(
+                "{} % of these loops do not oscillate.",
+                fixed(100.0 * silent, 0)
+            )
         } else {
-            String::new()
+            Message::default()
         };
         if self.quantity == Quantity::Stability {
             let stable = 100.0 * values.iter().sum::<f64>() / values.len() as f64;
-            return format!("{stable:.0} % of the cycles are stable.{tail}");
+            return msg!("{} % of the cycles are stable.", fixed(stable, 0)).and(tail);
         }
         let label = self.quantity.label();
         let initial = label[..1].to_uppercase();
-        format!(
-            "{initial}{} from {} to {}.{tail}",
-            &label[1..],
-            number(*least),
-            with_unit(*most, self.quantity.unit()),
-        )
+        let words = format!("{initial}{} from {{}} to {{}}.", &label[1..]);
+        let ends = [number(*least), with_unit(*most, self.quantity.unit())];
+        Message::Words(words.into(), ends.map(Message::from).to_vec()).and(tail)
     }
 
     fn picture_ui(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {

@@ -2,6 +2,8 @@
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Quantity};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use serde::{Deserialize, Serialize};
 
 use super::Maps;
@@ -38,18 +40,18 @@ impl Settable for Maps {
         _ctx: &egui::Context,
         settings: Settings,
         desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         let mut input = self.input.clone();
         input.x = settings.across;
         input.y = settings.upwards;
         input.base = settings.around;
         input
             .validate()
-            .map_err(|e| format!("This map is not possible: {e}."))?;
+            .map_err(|e| msg!("This map is not possible: {}.", e))?;
         input
             .base
             .validate()
-            .map_err(|e| format!("This loop is not possible: {e}."))?;
+            .map_err(|e| msg!("This loop is not possible: {}.", e))?;
         self.input = input;
         self.quantity = settings.quantity;
         self.point = settings.point;

@@ -3,6 +3,8 @@
 use egui::Ui;
 use hysteron_core::effect::find;
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::mystery::{Experiment, Hideable, Pick, Strength, hideable};
 
 use super::Bench;
@@ -28,7 +30,8 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
         ),
         Experiment::Drifting => (
             "Drifting relay",
-            "A relay whose levels differ, so that the motor drifts to and fro: shows a gap behind it. Backlash measures that at once, Compare looks for it for minutes.",
+            "A relay whose levels differ, so that the motor drifts to and fro: shows a gap behind it. Backlash \
+             measures that at once, Compare looks for it for minutes.",
         ),
         Experiment::ProcessBinary => (
             "Two levels",
@@ -118,7 +121,7 @@ impl Bench {
     }
 
     /// What the page may choose, in words.
-    fn surprise(&self) -> String {
+    fn surprise(&self) -> Message {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
         let names: Vec<&str> = self
             .menu()
@@ -126,8 +129,9 @@ impl Bench {
             .filter(shown)
             .map(Hideable::name)
             .collect();
-        format!(
-            "It may hide: {}. One mystery in five hides nothing, half of them one effect, the others two of different kinds, all between small and large.",
+        msg!(
+            "It may hide: {}. One mystery in five hides nothing, half of them one effect, the others two of \
+             different kinds, all between small and large.",
             names.join(", ")
         )
     }
@@ -141,8 +145,8 @@ impl Bench {
         }
         let count = others.iter().filter(|h| self.pick(h.id).is_some()).count();
         let title = match count {
-            0 => "Effects that this experiment hardly shows".to_owned(),
-            n => format!("Effects that this experiment hardly shows ({n} chosen)"),
+            0 => "Effects that this experiment hardly shows".into(),
+            n => msg!("Effects that this experiment hardly shows ({} chosen)", n),
         };
         egui::CollapsingHeader::new(tr(title))
             .id_salt("hardly_shown")
@@ -177,7 +181,7 @@ impl Bench {
             desk.targets
                 .note(format!("mystery:hide:{}", effect.id), ui, &tick);
             if let Some(other) = other {
-                tick.on_disabled_hover_text(tr(format!("Not together with {}", other.name())));
+                tick.on_disabled_hover_text(tr(msg!("Not together with {}", other.name())));
             } else if tick.changed() {
                 self.picks_mut().retain(|p| p.effect != effect.id);
                 if chosen {

@@ -2,6 +2,8 @@
 
 use egui_plot::Line;
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::fixed;
+use hysteron_core::msg;
 use hysteron_core::mystery::{Choice, Experiment, Mystery, columns};
 
 use crate::command::Command;
@@ -87,11 +89,12 @@ pub(super) fn ui(product: &Product, changed: bool, ui: &mut egui::Ui, desk: &mut
     }
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong(tr(format!("{name} is made.")));
-        ui.label(tr(format!("{samples} samples in {duration:.1} s. What is hidden is sealed inside.")));
+        ui.strong(tr(msg!("{} is made.", name)));
+        ui.label(tr(msg!("{} samples in {} s. What is hidden is sealed inside.", samples, fixed(*duration, 1))));
         if changed {
             let color = ui.visuals().warn_fg_color;
-            theme::tell(&ui.colored_label(color, tr("This is still the mystery that was made: your choices have changed since.")));
+            theme::tell(&ui.colored_label(color, tr(
+                "This is still the mystery that was made: your choices have changed since.")));
         }
         ui.horizontal_wrapped(|ui| {
             let save = ui.button(tr("Save the file"));

@@ -6,6 +6,8 @@ mod made;
 mod picture;
 
 use hysteron_core::effect::EffectId;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::mystery::{Choice, Experiment, Pick, Request, SHORTEST_WORD};
 use hysteron_core::report::sha256;
 use serde::{Deserialize, Serialize};
@@ -40,7 +42,7 @@ pub struct Bench {
     job: Option<Job<MysteryTask>>,
     /// What the mystery that is being made was asked to be.
     asked: Option<Asked>,
-    message: Option<String>,
+    message: Option<Message>,
     made: Option<Product>,
     /// Mysteries that were made since the app started.
     count: u32,
@@ -57,10 +59,10 @@ pub struct Settings {
 
 impl Bench {
     /// Why nothing can be made now.
-    fn obstacle(&self) -> Option<String> {
+    fn obstacle(&self) -> Option<Message> {
         let letters = self.word.trim().chars().count();
         (letters < SHORTEST_WORD)
-            .then(|| format!("The password needs {SHORTEST_WORD} letters or more."))
+            .then(|| msg!("The password needs {} letters or more.", SHORTEST_WORD))
     }
 
     fn make(&mut self, ctx: &egui::Context) {
@@ -108,7 +110,9 @@ impl Bench {
 
     fn page_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         theme::answer_ui(ui, "Which effect is hidden?");
-        ui.label(tr("The bench hides physics in a drive or a process and records it. The truth travels with the record, sealed with your password: solve the mystery, then reveal it."));
+        ui.label(tr(
+            "The bench hides physics in a drive or a process and records it. The truth travels with the record, \
+             sealed with your password: solve the mystery, then reveal it."));
         ui.add_space(6.0);
         if self.made.is_none() {
             picture::ui(ui, self.experiment);
@@ -186,7 +190,10 @@ fn student_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.heading(tr("Were you given a mystery?"));
-        ui.label(tr("Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is left. Then enter the password under Reveal: it shows the truth beside your model, with points for the effects and for the numbers."));
+        ui.label(tr(
+            "Open its link, or drop its file on this window. Compare opens: add what is missing until only noise is \
+             left. Then enter the password under Reveal: it shows the truth beside your model, with points for the \
+             effects and for the numbers."));
         let go = ui.button(tr("Go to Compare"));
         desk.targets.note("mystery:student", ui, &go);
         if go.clicked() {
@@ -255,7 +262,7 @@ impl Settable for Bench {
         _ctx: &egui::Context,
         settings: Settings,
         _desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         self.experiment = settings.experiment;
         self.by_hand = settings.by_hand;
         Ok(())

@@ -1,6 +1,7 @@
 //! The first minute: a loop that runs, a question, and doors to the rest.
 
 use hysteron_core::explore::{ExploreData, ExploreInput, compute};
+use hysteron_core::message::Message;
 use hysteron_core::relay::Relay;
 use serde::{Deserialize, Serialize};
 
@@ -125,7 +126,7 @@ impl Settable for Start {
         _ctx: &egui::Context,
         settings: Settings,
         _desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         self.playback.set(settings.paused);
         Ok(())
     }
@@ -178,7 +179,9 @@ impl Start {
     fn loop_ui(&mut self, ui: &mut egui::Ui, relay: &mut Relay) {
         ui.add_space(6.0);
         theme::answer_ui(ui, "Why does a thermostat never come to rest?");
-        ui.label(tr("A relay switches a process up and down. It always switches too late, so the output overshoots both thresholds again and again: a limit cycle."));
+        ui.label(tr(
+            "A relay switches a process up and down. It always switches too late, so the output overshoots both \
+             thresholds again and again: a limit cycle."));
         match self.finished.as_ref().map(|(_, data)| data) {
             Some(Ok(data)) => {
                 ui.strong(tr(&data.text));

@@ -2,6 +2,8 @@
 
 use egui_plot::{Line, MarkerShape, Points};
 use hysteron_core::count::counted;
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::tuning::{AdaptationStep, PhaseMarginReport};
 use hysteron_core::uncertain::significant;
 
@@ -22,21 +24,29 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> String {
+fn answer(seen: Seen<'_>) -> Message {
     let wanted = seen.input.wish.phase_margin.to_degrees();
     match &seen.report.phase_margin {
-        Ok(found) => format!(
-            "K = {} for {wanted:.0}°, after {} changes of the gain{}.",
-            number(found.adaptation.gain),
-            found.adaptation.steps.len() - 1,
-            found
-                .true_phase_margin
-                .map_or_else(String::new, |m| format!(
-                    "; the true margin is {:.1}°",
-                    m.to_degrees()
-                ))
-        ),
-        Err(error) => format!("No gain was found for {wanted:.0}°: {error}."),
+        Ok(found) => {
+            let gain = number(found.adaptation.gain);
+            let (wanted, changes) = (fixed(wanted, 0), found.adaptation.steps.len() - 1);
+            match found.true_phase_margin {
+                Some(margin) => msg!(
+                    "K = {} for {}°, after {} changes of the gain; the true margin is {}°.",
+                    gain,
+                    wanted,
+                    changes,
+                    fixed(margin.to_degrees(), 1)
+                ),
+                None => msg!(
+                    "K = {} for {}°, after {} changes of the gain.",
+                    gain,
+                    wanted,
+                    changes
+                ),
+            }
+        }
+        Err(error) => msg!("No gain was found for {}°: {}.", fixed(wanted, 0), error),
     }
 }
 
@@ -46,8 +56,9 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
         return;
     };
     let design = &found.adaptation.design;
-    ui.label(tr(format!(
-        "A relay with k = π a/4 = {} and ε = a sin φ = {} stands in series with the gain K, which is changed from run to run until the amplitude is a = {}. Every step squares the error, at the price of a second run.",
+    ui.label(tr(msg!(
+        "A relay with k = π a/4 = {} and ε = a sin φ = {} stands in series with the gain K, which is changed from \
+         run to run until the amplitude is a = {}. Every step squares the error, at the price of a second run.",
         number(design.gain),
         number(design.hysteresis),
         number(design.amplitude)
@@ -159,19 +170,19 @@ fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     if let [.., last, now] = secant.steps.get(..shown).unwrap_or_default()
         && let Some(next) = secant.steps.get(shown)
     {
-        ui.label(tr(format!(
-            "Next: K = {:.6} - ({:.6} - {:.6}) · ({:.6} - {:.6})/({:.6} - {:.6}) = {:.6}.",
-            now.gain,
-            a(now),
-            found.adaptation.design.amplitude,
-            now.gain,
-            last.gain,
-            a(now),
-            a(last),
-            next.gain
+        ui.label(tr(msg!(
+            "Next: K = {} - ({} - {}) · ({} - {})/({} - {}) = {}.",
+            fixed(now.gain, 6),
+            fixed(a(now), 6),
+            fixed(found.adaptation.design.amplitude, 6),
+            fixed(now.gain, 6),
+            fixed(last.gain, 6),
+            fixed(a(now), 6),
+            fixed(a(last), 6),
+            fixed(next.gain, 6)
         )));
     } else {
-        ui.label(tr(format!(
+        ui.label(tr(msg!(
             "It has the wanted amplitude after {}; Steffensen's steps took {}.",
             counted(secant.steps.len(), "run"),
             found
@@ -203,10 +214,11 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     });
     ui.small(tr("Order 2: quadratic convergence (Steffensen's secant through a run and its proportional correction)."));
     if let Some(truth) = found.true_phase_margin {
-        ui.label(tr(format!(
-            "With this K the true phase margin is {:.2}°; the difference from the wanted {:.0}° is the error of the describing function.",
-            truth.to_degrees(),
-            adaptation.design.phase_margin.to_degrees()
+        ui.label(tr(msg!(
+            "With this K the true phase margin is {}°; the difference from the wanted {}° is the error of the \
+             describing function.",
+            fixed(truth.to_degrees(), 2),
+            fixed(adaptation.design.phase_margin.to_degrees(), 0)
         )));
     }
     secant_ui(ui, found);

@@ -1,5 +1,6 @@
 //! What can be set: the plant, the relay, what is wanted, and the controller before.
 
+use hysteron_core::msg;
 use hysteron_core::plant::presets;
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::{AMPLITUDE_CONVENTION, Pid, RULES, TuningInput, Wish, rule};
@@ -145,7 +146,7 @@ fn equations_ui(ui: &mut egui::Ui) {
             ui.small(tr(what));
             equation_ui(ui, equation, &|_| None);
         }
-        ui.small(tr(format!("Convention: {AMPLITUDE_CONVENTION}.")));
+        ui.small(tr(msg!("Convention: {}.", AMPLITUDE_CONVENTION)));
         ui.small(tr(
             "φ: phase margin, M: identified point of the Nyquist curve, S: where it should go.",
         ));

@@ -1,6 +1,8 @@
 //! Step 6: the loop before and after.
 
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::tuning::{LoopReport, Response, TuningReport};
 
 use super::draw::{
@@ -22,24 +24,24 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> String {
+fn answer(seen: Seen<'_>) -> Message {
     let before = &seen.report.before;
     let after = match &seen.report.after {
         Ok(after) => after,
-        Err(error) => return format!("There is no tuned loop: {error}."),
+        Err(error) => return msg!("There is no tuned loop: {}.", error),
     };
     match (before.margins, after.margins) {
-        (_, None) => "No: the tuned loop is unstable. Take another rule.".to_owned(),
-        (None, Some(m)) => format!(
-            "It was unstable; now it is stable, with Ms = {:.2}.",
-            m.max_sensitivity
+        (_, None) => "No: the tuned loop is unstable. Take another rule.".into(),
+        (None, Some(m)) => msg!(
+            "It was unstable; now it is stable, with Ms = {}.",
+            fixed(m.max_sensitivity, 2)
         ),
-        (Some(old), Some(new)) => format!(
-            "A load step now leaves an error of {} s instead of {} s; Ms is {:.2} instead of {:.2}.",
+        (Some(old), Some(new)) => msg!(
+            "A load step now leaves an error of {} s instead of {} s; Ms is {} instead of {}.",
             number(after.load.iae),
             number(before.load.iae),
-            new.max_sensitivity,
-            old.max_sensitivity
+            fixed(new.max_sensitivity, 2),
+            fixed(old.max_sensitivity, 2)
         ),
     }
 }
@@ -47,7 +49,7 @@ fn answer(seen: Seen<'_>) -> String {
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let report = seen.report;
     let after = report.after.as_ref().ok();
-    ui.label(tr(format!(
+    ui.label(tr(msg!(
         "Before: {}. After: {}.",
         controller(&report.before.pid),
         after.map_or_else(|| "none".to_owned(), |a| controller(&a.pid))
@@ -222,51 +224,52 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
 fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, horizon: f64) {
     let [before_color, after_color] = [BEFORE, AFTER].map(|c| theme::readable(ui, c));
     table(ui, "loops", &["", "before", "after"], |ui| {
-        let mut row = |name: &str, value: &dyn Fn(&LoopReport) -> String| {
+        let mut row = |name: &str, value: &dyn Fn(&LoopReport) -> Message| {
             ui.label(tr(name));
             ui.colored_label(before_color, tr(value(before)));
-            ui.colored_label(after_color, tr(after.map_or_else(String::new, value)));
+            ui.colored_label(after_color, tr(after.map_or_else(Message::default, value)));
             ui.end_row();
         };
         row("stable", &|l| match l.unstable_poles {
-            0 => "yes".to_owned(),
-            n => format!("no: {n} poles in the right half-plane"),
+            0 => "yes".into(),
+            n => msg!("no: {} poles in the right half-plane", n),
         });
         row("gain margin", &|l| {
             l.margins
-                .map_or_else(dash, |m| maybe(m.gain_margin, "without limit"))
+                .map_or_else(dash, |m| maybe(m.gain_margin, "without limit").into())
         });
         row("phase margin [°]", &|l| {
             l.margins.map_or_else(dash, |m| {
-                maybe(m.phase_margin.map(f64::to_degrees), "without limit")
+                maybe(m.phase_margin.map(f64::to_degrees), "without limit").into()
             })
         });
         row("delay margin [s]", &|l| {
             l.margins
-                .map_or_else(dash, |m| maybe(m.delay_margin, "without limit"))
+                .map_or_else(dash, |m| maybe(m.delay_margin, "without limit").into())
         });
         row("sensitivity Ms", &|l| {
-            l.margins.map_or_else(dash, |m| number(m.max_sensitivity))
+            l.margins
+                .map_or_else(dash, |m| number(m.max_sensitivity).into())
         });
         row("overshoot [%]", &|l| {
             stable(l, format!("{:.0}", 100.0 * l.set_point.overshoot))
         });
         row("settled after [s]", &|l| {
-            maybe(l.set_point.settling_time, "not yet")
+            maybe(l.set_point.settling_time, "not yet").into()
         });
         row("load error [s]", &|l| stable(l, number(l.load.iae)));
         row("load peak", &|l| stable(l, number(l.load.peak)));
     });
-    ui.small(tr(format!(
+    ui.small(tr(msg!(
         "Load error: integral of |y| over the {} s shown. Without integral action it grows with the time.",
         number(horizon)
     )));
 }
 
-fn dash() -> String {
-    "-".to_owned()
+fn dash() -> Message {
+    "-".into()
 }
 
-fn stable(report: &LoopReport, text: String) -> String {
-    report.margins.map_or_else(dash, |_| text)
+fn stable(report: &LoopReport, text: impl Into<Message>) -> Message {
+    report.margins.map_or_else(dash, |_| text.into())
 }

@@ -12,6 +12,7 @@ mod settings;
 mod stage;
 mod ultimate;
 
+use hysteron_core::message::Message;
 use hysteron_core::relay::Relay;
 use hysteron_core::tuning::TuningInput;
 
@@ -132,7 +133,7 @@ impl Tune {
                 Command::Set("tune", "step", serde_json::json!(next.id))
             });
         Some(Hint {
-            sentence: stage.next.to_owned(),
+            sentence: stage.next.into(),
             commands: vec![command],
         })
     }
@@ -261,7 +262,7 @@ impl Tune {
         })
     }
 
-    fn answer(&self) -> Option<String> {
+    fn answer(&self) -> Option<Message> {
         let stage = STAGES.get(self.stage)?;
         self.seen(false).map(stage.answer)
     }

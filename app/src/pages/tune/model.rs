@@ -1,5 +1,7 @@
 //! Step 4: a model from one asymmetric relay test.
 
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::tuning::{AsymmetricTest, Model, TuningError};
 
 use super::draw::{beside, number, run_ui, table};
@@ -16,31 +18,31 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> String {
+fn answer(seen: Seen<'_>) -> Message {
     match &seen.report.asymmetric {
         Ok(AsymmetricTest {
             berner: Ok(model), ..
-        }) => format!("A model: {}.", words(model)),
+        }) => msg!("A model: {}.", words(model)),
         Ok(AsymmetricTest {
             berner: Err(error), ..
         })
-        | Err(error) => format!("No model: {error}."),
+        | Err(error) => msg!("No model: {}.", error),
     }
 }
 
-fn words(model: &Model) -> String {
+fn words(model: &Model) -> Message {
     match *model {
         Model::Lag {
             gain,
             time_constant,
             dead_time,
-        } => format!(
+        } => msg!(
             "gain {}, lag {} s, dead time {} s",
             number(gain),
             number(time_constant),
             number(dead_time)
         ),
-        Model::Integrating { gain, dead_time } => format!(
+        Model::Integrating { gain, dead_time } => msg!(
             "an integrator, gain {} 1/s, dead time {} s",
             number(gain),
             number(dead_time)
@@ -50,15 +52,17 @@ fn words(model: &Model) -> String {
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let Ok(found) = &seen.report.asymmetric else {
-        ui.label(tr("Give the relay some asymmetry: then the plant's input has a mean, which reveals the static gain."));
+        ui.label(tr(
+            "Give the relay some asymmetry: then the plant's input has a mean, which reveals the static gain."));
         return;
     };
-    ui.label(tr(format!(
-        "The input now has a mean, which reveals the static gain; the half periods of {} s and {} s have the ratio {}, which reveals how much of the lag is dead time: {:.0} %.",
+    ui.label(tr(msg!(
+        "The input now has a mean, which reveals the static gain; the half periods of {} s and {} s have the ratio \
+         {}, which reveals how much of the lag is dead time: {} %.",
         number(found.test.on_time),
         number(found.test.off_time),
         number(found.half_period_ratio),
-        100.0 * found.normalised_dead_time
+        fixed(100.0 * found.normalised_dead_time, 0)
     )));
     beside(
         ui,
@@ -93,20 +97,22 @@ fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
             ui.small(tr(error.to_string()));
         }
     }
-    ui.small(tr("Berner, Hägglund and Åström: from the half periods. Shen, Wu and Yu: through the points of the Nyquist curve at 0 and at ω."));
+    ui.small(tr(
+        "Berner, Hägglund and Åström: from the half periods. Shen, Wu and Yu: through the points of the Nyquist \
+         curve at 0 and at ω."));
     let point = &found.point;
-    ui.label(tr(format!(
+    ui.label(tr(msg!(
         "Point of the Nyquist curve at ω = {} rad/s: {} {} j.",
         number(point.omega),
         number(point.value[0]),
-        format_args!(
+        msg!(
             "{} {}",
             if point.value[1] < 0.0 { "-" } else { "+" },
             number(point.value[1].abs())
         )
     )));
     if let Some(gain) = found.static_gain {
-        ui.label(tr(format!("Static gain: {}.", number(gain))));
+        ui.label(tr(msg!("Static gain: {}.", number(gain))));
     }
 }
 

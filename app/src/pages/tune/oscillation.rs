@@ -3,6 +3,8 @@
 use super::draw::{number, run_ui};
 use super::stage::{Seen, Stage};
 use crate::language::tr;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 pub const STAGE: Stage = Stage {
     id: "oscillation",
@@ -14,9 +16,9 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> String {
+fn answer(seen: Seen<'_>) -> Message {
     let test = &seen.report.test;
-    format!(
+    msg!(
         "It oscillates: period {} s, amplitude {}.",
         number(test.period),
         number(test.amplitude)
@@ -24,7 +26,9 @@ fn answer(seen: Seen<'_>) -> String {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
-    ui.label(tr("From rest to the settled cycle. No model is needed: these two numbers are the whole measurement. Amplitude: half of peak to peak."));
+    ui.label(tr(
+        "From rest to the settled cycle. No model is needed: these two numbers are the whole measurement. Amplitude: \
+         half of peak to peak."));
     if !seen.pinned {
         plot(ui, seen, height);
     }

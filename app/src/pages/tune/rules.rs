@@ -1,5 +1,7 @@
 //! Step 5: every rule's controller; a click chooses one.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::tuning::{LoopReport, rule};
 
 use super::draw::{cell, controller, maybe, number, set_table};
@@ -21,16 +23,18 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> String {
+fn answer(seen: Seen<'_>) -> Message {
     let name = rule(&seen.input.rule).map_or("This rule", |r| r.name);
     match &seen.report.after {
-        Ok(after) => format!("{name}: {}.", controller(&after.pid)),
-        Err(error) => format!("{name} gives no controller: {error}."),
+        Ok(after) => msg!("{}: {}.", name, controller(&after.pid)),
+        Err(error) => msg!("{} gives no controller: {}.", name, error),
     }
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
-    ui.label(tr("The same experiment, different wishes: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is risky) with how well a load is rejected. Click a rule to take it."));
+    ui.label(tr(
+        "The same experiment, different wishes: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is \
+         risky) with how well a load is rejected. Click a rule to take it."));
     let heads = [
         "rule",
         "K",
@@ -63,10 +67,9 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
             ui.end_row();
         }
     });
-    ui.small(tr(format!(
-        "Ms: maximum sensitivity, 1/Ms is the least distance of the loop's Nyquist curve from -1. Load error: integral of |y| over {} s after a step of 1 at the plant's input.",
-        number(seen.report.horizon)
-    )));
+    ui.small(tr(msg!(
+        "Ms: maximum sensitivity, 1/Ms is the least distance of the loop's Nyquist curve from -1. Load error: \
+         integral of |y| over {} s after a step of 1 at the plant's input.", number(seen.report.horizon))));
     for report in &seen.report.rules {
         if let (Ok(rule), Err(error)) = (rule(&report.rule), &report.outcome) {
             ui.small(format!("{}: {}.", tr(rule.name), tr(error.to_string())));

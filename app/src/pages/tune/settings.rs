@@ -1,5 +1,6 @@
 //! What is set on the page, besides plant and relay.
 
+use hysteron_core::message::Message;
 use hysteron_core::tuning::{Pid, rule};
 use serde::{Deserialize, Serialize};
 
@@ -46,15 +47,15 @@ impl Settable for Tune {
         _ctx: &egui::Context,
         settings: Settings,
         _desk: &Desk,
-    ) -> Result<(), String> {
+    ) -> Result<(), Message> {
         let stage = STAGES.iter().position(|s| s.id == settings.step);
         let stage = stage.ok_or("This step of the tuning does not exist.")?;
         rule(&settings.rule).map_err(|_| "This tuning rule does not exist.")?;
         if settings.asymmetry.abs() > 0.99 {
-            return Err("The asymmetry must be -0.99 to 0.99.".to_owned());
+            return Err("The asymmetry must be -0.99 to 0.99.".into());
         }
         if !MARGINS.contains(&settings.phase_margin) {
-            return Err("The phase margin must be 0.01 to 1.55 rad.".to_owned());
+            return Err("The phase margin must be 0.01 to 1.55 rad.".into());
         }
         self.measured.take(&settings.measured)?;
         self.stage = stage;

@@ -1,5 +1,6 @@
 //! What a step of the tuning experiment is.
 
+use hysteron_core::message::Message;
 use hysteron_core::tuning::{TuningInput, TuningReport};
 
 /// What a step shows.
@@ -18,7 +19,7 @@ pub struct Stage {
     /// What its button says.
     pub title: &'static str,
     pub question: &'static str,
-    pub answer: fn(Seen<'_>) -> String,
+    pub answer: fn(Seen<'_>) -> Message,
     /// What the next step does.
     pub next: &'static str,
     /// The plot that stays in view in a narrow window.

@@ -1,6 +1,8 @@
 //! Step 2: ultimate gain and period, equation (9), beside the true ones.
 
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::tuning::Ultimate;
 
 use hysteron_core::uncertain::significant;
@@ -21,25 +23,27 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> String {
+fn answer(seen: Seen<'_>) -> Message {
     let found = &seen.report.ultimate;
-    let said = format!(
-        "Relay estimate Ku = {}, Tu = {} s",
-        number(found.by_relay.gain),
-        number(found.by_relay.period)
-    );
+    let [gain, period] = [found.by_relay.gain, found.by_relay.period].map(number);
     match found.truth {
-        Some(truth) => format!(
-            "{said}; true values {} and {} s.",
+        Some(truth) => msg!(
+            "Relay estimate Ku = {}, Tu = {} s; true values {} and {} s.",
+            gain,
+            period,
             number(truth.gain),
             number(truth.period)
         ),
-        None => format!("{said}. In truth no gain makes this loop oscillate."),
+        None => msg!("Relay estimate Ku = {}, Tu = {} s.", gain, period)
+            .and("In truth no gain makes this loop oscillate."),
     }
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
-    ui.label(tr("The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies below the real axis: the point has less than 180° of phase lag, and 4k/(πa) is the gain that moves it onto the unit circle. Try less hysteresis."));
+    ui.label(tr(
+        "The relay finds the point where the plant's Nyquist curve meets -1/N(a). With hysteresis that line lies \
+         below the real axis: the point has less than 180° of phase lag, and 4k/(πa) is the gain that moves it onto \
+         the unit circle. Try less hysteresis."));
     beside(
         ui,
         height,
@@ -151,16 +155,17 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
         );
         row("true", found.truth, None, None);
     });
-    ui.small(tr(format!(
+    ui.small(tr(msg!(
         "Convention here: {}. A program that counts differently reports half or twice this Ku.",
-        found.amplitude_convention
+        Message::words(found.amplitude_convention.clone())
     )));
     ui.add_space(6.0);
     let point = &seen.report.point;
-    ui.label(tr(format!(
-        "The point itself, at ω = {} rad/s, is off by {:.1} % of its size, since the describing function takes the output for a sine; by the first harmonic of the record it is exact (off by {}).",
+    ui.label(tr(msg!(
+        "The point itself, at ω = {} rad/s, is off by {} % of its size, since the describing function takes the \
+         output for a sine; by the first harmonic of the record it is exact (off by {}).",
         number(point.point.omega),
-        100.0 * point.error,
+        fixed(100.0 * point.error, 1),
         significant(point.fourier_error, 1)
     )));
 }

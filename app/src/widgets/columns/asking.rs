@@ -2,6 +2,8 @@
 
 use egui::Ui;
 use hysteron_core::measurement::{FoundColumn, Kind, Role};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 use super::choice::{Channel, Choice, Chosen};
 use super::form::Form;
@@ -69,7 +71,7 @@ impl Form {
         let missing = choice.missing();
         if !missing.is_empty() {
             let missing = missing.join(", ");
-            ui.label(tr(format!("Still to choose: {missing}.")));
+            ui.label(tr(msg!("Still to choose: {}.", missing)));
         }
         ui.horizontal_wrapped(|ui| {
             let open = ui.add_enabled(missing.is_empty(), egui::Button::new(tr("Open it")));
@@ -134,7 +136,7 @@ impl Form {
         };
         let present = chosen.and_then(|i| self.columns.get(i));
         let list = egui::ComboBox::from_id_salt(channel.title)
-            .selected_text(present.map_or_else(|| tr(nothing), name_of))
+            .selected_text(present.map_or_else(|| tr(nothing), |column| tr(name_of(column))))
             .width(COLUMN_WIDTH)
             .truncate()
             .show_ui(ui, |ui| {
@@ -143,7 +145,7 @@ impl Form {
                     ui.horizontal(|ui| {
                         let row = egui::vec2(COURSE.x, ui.spacing().interact_size.y);
                         course_ui(ui, column, row);
-                        ui.selectable_value(chosen, Some(i), name_of(column));
+                        ui.selectable_value(chosen, Some(i), tr(name_of(column)));
                     });
                 }
             });
@@ -168,27 +170,27 @@ fn label_ui(ui: &mut Ui, name: &str) -> egui::Response {
 }
 
 /// A column as it is called in the lists.
-fn name_of(column: &FoundColumn) -> String {
-    let mut name = column.name.clone();
-    if column.address != name {
-        let place = tr(&column.address);
+fn name_of(column: &FoundColumn) -> Message {
+    let mut name = Message::name(&column.name);
+    if column.address != column.name {
+        let place = Message::words(column.address.clone());
         name = if name.is_empty() {
             place
         } else {
-            format!("{name} ({place})")
+            msg!("{} ({})", name, place)
         };
     }
     match &column.unit {
-        Some(unit) => format!("{name} [{unit}]"),
+        Some(unit) => msg!("{} [{}]", name, Message::name(unit)),
         None => name,
     }
 }
 
 /// What stands in a column, in one line.
-fn values(column: &FoundColumn, unit: &str) -> String {
+fn values(column: &FoundColumn, unit: &str) -> Message {
     let numbers = &column.numbers;
     let Some([least, largest]) = numbers.range.map(|r| r.map(|v| significant(v, DIGITS))) else {
-        return format!("{} values, none of which is finite", numbers.count);
+        return msg!("{} values, none of which is finite", numbers.count);
     };
     let first: Vec<String> = numbers
         .first
@@ -197,9 +199,22 @@ fn values(column: &FoundColumn, unit: &str) -> String {
         .collect();
     let (count, first) = (numbers.count, first.join(", "));
     if unit.is_empty() {
-        format!("{count} values from {least} to {largest}; the first are {first}")
+        msg!(
+            "{} values from {} to {}; the first are {}",
+            count,
+            least,
+            largest,
+            first
+        )
     } else {
-        format!("{count} values from {least} to {largest} {unit}; the first are {first}")
+        msg!(
+            "{} values from {} to {} {}; the first are {}",
+            count,
+            least,
+            largest,
+            Message::name(unit),
+            first
+        )
     }
 }
 
@@ -279,7 +294,8 @@ fn torque_constant_ui(ui: &mut Ui, choice: &mut Choice) {
             });
         list.response.labelled_by(label.id);
     });
-    ui.small(tr("Without it, inertia, friction and loads are given in multiples of it; times and gaps do not depend on it."));
+    ui.small(tr(
+        "Without it, inertia, friction and loads are given in multiples of it; times and gaps do not depend on it."));
 }
 
 /// How the numbers of a column go, from the first to the last; what is not finite is a gap.

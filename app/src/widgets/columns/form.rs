@@ -1,6 +1,7 @@
 //! A file that does not say what its columns are, and what was chosen for them.
 
 use hysteron_core::measurement::{FoundColumn, Kind};
+use hysteron_core::message::Message;
 use hysteron_work::content::Content;
 use hysteron_work::reading::Reading;
 
@@ -16,12 +17,12 @@ pub struct Form {
     /// Where the file is, if it can be opened again.
     pub origin: Option<Recent>,
     /// Why it is asked.
-    pub(super) reason: String,
+    pub(super) reason: Message,
     pub(super) columns: Vec<FoundColumn>,
     /// What was chosen.
     pub choice: Choice,
     /// Why it cannot be read as was chosen, or why another file was refused meanwhile.
-    pub error: Option<String>,
+    pub error: Option<Message>,
 }
 
 impl Form {
@@ -30,7 +31,7 @@ impl Form {
         file: String,
         content: Content,
         origin: Option<Recent>,
-        reason: String,
+        reason: Message,
         columns: Vec<FoundColumn>,
     ) -> Self {
         Self {

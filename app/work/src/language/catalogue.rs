@@ -16,6 +16,8 @@
 
 use std::collections::HashMap;
 
+use hysteron_core::message::Message;
+
 use super::number::with_comma;
 
 /// Texts nested in each other, at most.
@@ -54,7 +56,7 @@ pub struct Translated {
 }
 
 /// A piece of a translation.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Piece {
     Text(String),
     Slot(usize),
@@ -72,10 +74,20 @@ struct Pattern {
     weight: usize,
 }
 
+/// A translation with slots.
+#[derive(Clone, Debug)]
+struct Filled {
+    pieces: Vec<Piece>,
+    /// Whether a slot stays as it is.
+    verbatim: Vec<bool>,
+}
+
 /// All texts of a language.
 #[derive(Debug, Default)]
 pub struct Catalogue {
     texts: HashMap<String, String>,
+    /// By their English, with `{}` for every slot.
+    messages: HashMap<String, Filled>,
     patterns: Vec<Pattern>,
     faults: Vec<String>,
 }
@@ -142,6 +154,14 @@ impl Catalogue {
                 Raw::Slot(_) => texts.push(String::new()),
             }
         }
+        let filled = Filled {
+            pieces: translation.clone(),
+            verbatim: verbatim.clone(),
+        };
+        let key = texts.join("{}");
+        if self.messages.insert(key, filled).is_some() {
+            self.faults.push(format!("twice: {english}"));
+        }
         self.patterns.push(Pattern {
             weight: texts.iter().map(String::len).sum(),
             texts,
@@ -164,6 +184,69 @@ impl Catalogue {
     /// A text in this language, as far as it is known.
     pub fn translate(&self, text: &str) -> Translated {
         self.nested(text, 0)
+    }
+
+    /// A message in this language: its English is the key of its words. What has no translation stays.
+    pub fn say(&self, message: &Message) -> Translated {
+        match message {
+            Message::Words(words, values) => self.words(words, values),
+            Message::Number(number) => Translated {
+                text: with_comma(number),
+                complete: true,
+            },
+            Message::Name(name) => Translated {
+                text: name.clone(),
+                complete: true,
+            },
+            Message::List(joint, items) => self.list(joint, items),
+        }
+    }
+
+    fn words(&self, words: &str, values: &[Message]) -> Translated {
+        if let Some(text) = self.texts.get(words) {
+            return Translated {
+                text: text.clone(),
+                complete: true,
+            };
+        }
+        let said: Vec<Translated> = values.iter().map(|value| self.say(value)).collect();
+        let texts = || said.iter().map(|value| value.text.as_str());
+        let Some(Filled { pieces, verbatim }) = self.messages.get(words) else {
+            return Translated {
+                text: filled_in(words, texts()),
+                complete: is_plain(words) && said.iter().all(|value| value.complete),
+            };
+        };
+        let piece = |piece: &Piece| match piece {
+            Piece::Text(text) => text.clone(),
+            Piece::Slot(at) if verbatim.get(*at) == Some(&true) => {
+                values.get(*at).map(Message::to_string).unwrap_or_default()
+            }
+            Piece::Slot(at) => texts().nth(*at).unwrap_or_default().to_owned(),
+        };
+        let mut all = said.iter().zip(verbatim);
+        Translated {
+            text: pieces.iter().map(piece).collect(),
+            complete: all.all(|(value, verbatim)| *verbatim || value.complete),
+        }
+    }
+
+    fn list(&self, joint: &str, items: &[Message]) -> Translated {
+        // Numbers that have commas are listed with semicolons.
+        if items.iter().all(|item| matches!(item, Message::Number(_))) {
+            let items: Vec<String> = items.iter().map(Message::to_string).collect();
+            return Translated {
+                text: with_comma(&items.join(joint)),
+                complete: true,
+            };
+        }
+        let items: Vec<Translated> = items.iter().map(|item| self.say(item)).collect();
+        let texts: Vec<&str> = items.iter().map(|item| item.text.as_str()).collect();
+        let known = JOINTS.iter().find(|known| known.0 == joint);
+        Translated {
+            text: texts.join(known.map_or(joint, |known| known.1)),
+            complete: items.iter().all(|item| item.complete),
+        }
     }
 
     fn nested(&self, text: &str, depth: usize) -> Translated {
@@ -339,6 +422,17 @@ fn pieces(line: &str) -> Vec<Raw<'_>> {
     pieces
 }
 
+/// Words with their values in them.
+fn filled_in<'v>(words: &str, mut values: impl Iterator<Item = &'v str>) -> String {
+    let mut pieces = words.split("{}");
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        text.push_str(values.next().unwrap_or_default());
+        text.push_str(piece);
+    }
+    text
+}
+
 /// Whether a text has nothing to translate: numbers, units and symbols only.
 pub fn is_plain(text: &str) -> bool {
     let name = |word: &str| word.contains(|c: char| c == '_' || c.is_ascii_digit());
@@ -354,6 +448,8 @@ pub fn is_plain(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use hysteron_core::msg;
+
     use super::*;
 
     const TEXTS: &str = "# remark
@@ -409,6 +505,28 @@ e^{-0.5s} ist eine Totzeit
             "Wegen Last driftet sie um 1. Für Reibung genügen 0,5 s.",
         );
         check("e^{-0.5s} is a dead time", "e^{-0.5s} ist eine Totzeit");
+    }
+
+    #[test]
+    fn a_message_is_found_by_its_words_and_its_values_are_said_too() {
+        let parts = Message::list(" or ", ["friction", "load"]);
+        let drift = msg!(
+            "It drifts by {} because of {}.",
+            "0.5 rad".to_owned(),
+            parts
+        );
+        let file = msg!("The file {} is read.", Message::name("load 0.5"));
+        let said = Catalogue::read(&[TEXTS]).say(&drift.and(file));
+        let german =
+            "Wegen Reibung oder Last driftet sie um 0,5 rad. Die Datei load 0.5 wird gelesen.";
+        assert_eq!((said.text.as_str(), said.complete), (german, true));
+        let numbers = Message::list(", ", ["0.5".to_owned(), "2".to_owned()]);
+        assert_eq!(Catalogue::read(&[TEXTS]).say(&numbers).text, "0,5; 2");
+        // Its English as one text is not matched.
+        let whole = Message::words("It drifts by 3 because of load.");
+        let said = Catalogue::read(&[TEXTS]).say(&whole);
+        assert_eq!(said.text, whole.to_string());
+        assert!(!said.complete);
     }
 
     #[test]

@@ -8,8 +8,11 @@ mod catalogue;
 mod number;
 mod tied;
 
+use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
+
+use hysteron_core::message::Message;
 
 pub use catalogue::{Catalogue, is_plain};
 pub use number::typed_in;
@@ -136,25 +139,82 @@ pub fn speak(language: Language) {
 
 /// A text of the interface in the language that is spoken: the English one where it has no translation. Its numbers
 /// stay on a line with their units.
-pub fn tr(text: impl AsRef<str>) -> String {
-    let text = text.as_ref();
-    let language = spoken();
+pub fn tr<'a>(text: impl Into<Said<'a>>) -> String {
+    let (text, language) = (text.into(), spoken());
     if language == Language::English {
-        return tied(text.to_owned());
+        return tied(text.english());
     }
-    SPEAKER.with_borrow_mut(|speaker| speaker.say(language, text))
+    SPEAKER.with_borrow_mut(|speaker| match text {
+        Said::Text(text) => speaker.say(language, &text),
+        Said::Message(message) => speaker.say_message(language, &message),
+    })
+}
+
+/// What is said, in English.
+#[derive(Debug)]
+pub enum Said<'a> {
+    /// As a text.
+    Text(Cow<'a, str>),
+    /// As words and their values.
+    Message(Cow<'a, Message>),
+}
+
+impl Said<'_> {
+    fn english(self) -> String {
+        match self {
+            Self::Text(text) => text.into_owned(),
+            Self::Message(message) => message.to_string(),
+        }
+    }
+}
+
+impl<'a> From<&'a str> for Said<'a> {
+    fn from(text: &'a str) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl<'a> From<&&'a str> for Said<'a> {
+    fn from(text: &&'a str) -> Self {
+        Self::Text((*text).into())
+    }
+}
+
+impl<'a> From<&'a String> for Said<'a> {
+    fn from(text: &'a String) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl From<String> for Said<'_> {
+    fn from(text: String) -> Self {
+        Self::Text(text.into())
+    }
+}
+
+impl From<Message> for Said<'_> {
+    fn from(message: Message) -> Self {
+        Self::Message(Cow::Owned(message))
+    }
+}
+
+impl<'a> From<&'a Message> for Said<'a> {
+    fn from(message: &'a Message) -> Self {
+        Self::Message(Cow::Borrowed(message))
+    }
 }
 
 /// The same with usual spaces, for a terminal and for files, where nothing breaks a line but who writes it.
-pub fn say(text: &str) -> String {
+pub fn say<'a>(text: impl Into<Said<'a>>) -> String {
+    let text = text.into();
     match spoken() {
-        Language::English => text.to_owned(),
+        Language::English => text.english(),
         Language::German => tr(text).replace(TIE, " "),
     }
 }
 
 /// A text of the interface as a sentence of its own: on a terminal it goes on behind the name of a file.
-pub fn tr_sentence(text: impl AsRef<str>) -> String {
+pub fn tr_sentence<'a>(text: impl Into<Said<'a>>) -> String {
     let text = tr(text);
     let mut rest = text.chars();
     let initial = rest.next().map(char::to_uppercase);
@@ -181,6 +241,15 @@ pub fn missed() -> Vec<String> {
 }
 
 impl Speaker {
+    fn say_message(&mut self, language: Language, message: &Message) -> String {
+        let catalogue = self.catalogue.get_or_insert_with(|| language.catalogue());
+        let said = catalogue.say(message);
+        if !said.complete && self.missed.len() < MISSED {
+            self.missed.insert(message.to_string());
+        }
+        tied(said.text)
+    }
+
     fn say(&mut self, language: Language, text: &str) -> String {
         if let Some(said) = self.said.get(text) {
             return said.clone();

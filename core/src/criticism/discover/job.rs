@@ -14,6 +14,8 @@ use crate::criticism::session::{Rest, Session};
 use crate::diagnosis::{CriticismError, Discovery, Limits};
 use crate::effect::{Effect, EffectId, Formula};
 use crate::measurement::Measurement;
+use crate::message::Message;
+use crate::msg;
 use crate::progress::Progress;
 use crate::user_model::UserModel;
 
@@ -120,10 +122,10 @@ impl DiscoveryJob {
         }
     }
 
-    fn running(fraction: f64, text: &str) -> Progress<Discovery> {
+    fn running(fraction: f64, text: impl Into<Message>) -> Progress<Discovery> {
         Progress::Running {
             fraction,
-            text: text.to_owned(),
+            text: text.into(),
         }
     }
 
@@ -222,15 +224,15 @@ impl DiscoveryJob {
                 .collect();
             with_one(session, base, *effect, &written.body, &own)
         });
-        let text = part
-            .first()
-            .map_or_else(String::new, |(_, _, w)| format!("Trying: {}", w.text));
+        let text = part.first().map_or_else(Message::default, |(_, _, w)| {
+            msg!("Trying: {}", Message::name(&w.text))
+        });
         for ((id, _, written), trial) in part.into_iter().zip(trials) {
             self.simulated
                 .extend(trial.map(|trial| Simulated { id, written, trial }));
         }
         let share = 1.0 - self.open.len() as f64 / self.waiting.max(1) as f64;
-        Self::running(0.5 + 0.4 * share, &text)
+        Self::running(0.5 + 0.4 * share, text)
     }
 
     /// Judges what was simulated.

@@ -1,7 +1,5 @@
 //! Which formula is the answer, and what is said of it.
 
-use std::fmt::Write as _;
-
 use super::curve::{self, Curve};
 use super::tuning::{CURVE_BETTER, PIECES};
 use super::weak::Weak;
@@ -11,6 +9,8 @@ use crate::criticism::select::outweighs;
 use crate::criticism::session::{Rest, Session};
 use crate::diagnosis::{Discovery, DiscoveryEnd, FoundFormula, Parameter};
 use crate::effect::EffectId;
+use crate::message::Message;
+use crate::msg;
 use crate::uncertain::{brief, with_error};
 
 /// A formula that was simulated.
@@ -120,7 +120,7 @@ pub(super) fn nothing_left(base: &Trial) -> Discovery {
         formulas: Vec::new(),
         curve: None,
         experiment: None,
-        text: "The model leaves measurement noise: there is no formula to look for.".to_owned(),
+        text: "The model leaves measurement noise: there is no formula to look for.".into(),
     }
 }
 
@@ -159,47 +159,46 @@ pub(super) fn answer(
             .filter(|_| end == DiscoveryEnd::Curve)
             .map(|c| c.variable.axis(kind).to_owned()),
         experiment: None,
-        text: String::new(),
+        text: Message::default(),
     };
     discovery.text = words(&discovery);
     discovery
 }
 
 /// The answer in words.
-fn words(discovery: &Discovery) -> String {
+fn words(discovery: &Discovery) -> Message {
     let before = brief(discovery.before);
     let Some(found) = discovery.found() else {
         return match (&discovery.curve, discovery.end) {
-            (Some(variable), _) => format!(
-                "None of the formulas that were tried: a smooth curve along the {variable} foretells more of what is left than the best of them."
+            (Some(variable), _) => msg!(
+                "None of the formulas that were tried: a smooth curve along the {} foretells more of what is left \
+                 than the best of them.",
+                Message::words(variable.clone())
             ),
-            _ => format!(
-                "No formula of up to three terms explains more than it leaves of the error of {before} × the noise."
+            _ => msg!(
+                "No formula of up to three terms explains more than it leaves of the error of {} × the noise.",
+                before
             ),
         };
     };
-    let values: Vec<String> = found
-        .parameters
-        .iter()
-        .map(|p| format!("{} = {}", p.name, with_error(p.value, p.std_error, &p.unit)))
-        .collect();
-    let mut text = format!(
-        "F = {} with {}: the error falls from {before} to {} × the noise.",
-        found.formula,
-        values.join(", "),
+    let values = found.parameters.iter().map(|p| {
+        let value = with_error(p.value, p.std_error, &p.unit);
+        msg!("{} = {}", Message::name(&p.name), value)
+    });
+    let mut text = msg!(
+        "F = {} with {}: the error falls from {} to {} × the noise.",
+        Message::name(&found.formula),
+        Message::list(", ", values),
+        before,
         brief(found.error)
     );
     if discovery.end == DiscoveryEnd::Part {
-        text.push_str(" More than noise is left: it is a part of what is missing, or near to it.");
+        text.add("More than noise is left: it is a part of what is missing, or near to it.");
     }
-    let others: Vec<&str> = discovery
-        .class()
-        .skip(1)
-        .map(|f| f.formula.as_str())
-        .collect();
+    let others = discovery.class().skip(1);
+    let others = Message::list(" or ", others.map(|f| Message::name(&f.formula)));
     if !others.is_empty() {
-        let others = others.join(" or ");
-        let _ = write!(text, " This record cannot tell it from {others}.");
+        text.add(msg!("This record cannot tell it from {}.", others));
     }
     text
 }

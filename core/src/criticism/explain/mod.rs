@@ -23,6 +23,7 @@ use super::contradicted::released;
 use super::screen::Screened;
 use super::session::Session;
 use crate::effect::{Effect, EffectId};
+use crate::message::Message;
 use heat::Heat;
 use hidden_body::is_hidden_body;
 pub(super) use judge::{Difference, difference, outweighs_in_either_half};
@@ -228,17 +229,17 @@ impl Explain {
     }
 
     /// Share of what is to be done, roughly, and what is under way.
-    pub fn progress(&self) -> (f64, String) {
+    pub fn progress(&self) -> (f64, Message) {
         let text = match self.stage {
-            Stage::Base => "Fitting the model".to_owned(),
+            Stage::Base => "Fitting the model".into(),
             Stage::Fit(_) | Stage::Seldom => {
-                self.tasks.front().map_or_else(String::new, Task::text)
+                self.tasks.front().map_or_else(Message::default, Task::text)
             }
             Stage::Check(_) | Stage::CheckSeldom(_) => {
-                "Checking that every effect is needed".to_owned()
+                "Checking that every effect is needed".into()
             }
-            Stage::TakeOut | Stage::Swap => "Checking what else could explain it".to_owned(),
-            Stage::Path | Stage::Done => "Done".to_owned(),
+            Stage::TakeOut | Stage::Swap => "Checking what else could explain it".into(),
+            Stage::Path | Stage::Done => "Done".into(),
         };
         let done = self.done as f64;
         (done / (done + 8.0), text)

@@ -8,6 +8,8 @@ use crate::criticism::fit::{Fit, least};
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
 use crate::effect::{Effect, EffectId, ParameterSpec};
+use crate::message::Message;
+use crate::msg;
 
 /// A model to be fitted.
 #[derive(Clone)]
@@ -21,13 +23,13 @@ pub(super) enum Task {
 }
 
 impl Task {
-    pub fn text(&self) -> String {
+    pub fn text(&self) -> Message {
         let names = |effects: &[&'static dyn Effect]| {
-            let names: Vec<&str> = effects.iter().map(|e| e.name()).collect();
-            format!("Trying: {}", names.join(", "))
+            let names = effects.iter().map(|e| e.name());
+            msg!("Trying: {}", Message::list(", ", names))
         };
         match self {
-            Self::Base(_) | Self::Without { .. } => "Fitting the model".to_owned(),
+            Self::Base(_) | Self::Without { .. } => "Fitting the model".into(),
             Self::Fit(sketch) => names(sketch.effects()),
         }
     }

@@ -8,6 +8,7 @@ use crate::criticism::session::{Scored, Session};
 use crate::diagnosis::{Limits, NextExperiment, Program, Trial};
 use crate::effect::{Effect, EffectId};
 use crate::measurement::Kind;
+use crate::message::Message;
 
 /// Iterations of a fit of the rival: at first, and for what comes into question.
 const SCAN_ITERATIONS: usize = 3;
@@ -201,7 +202,7 @@ impl Design {
             limits: self.bench.limits,
             others,
             models: self.bench.models.iter().map(|m| m.said.clone()).collect(),
-            text: String::new(),
+            text: Message::default(),
         };
         proposal.text = words::text(&proposal);
         Some(proposal)

@@ -40,7 +40,7 @@ impl ExperimentJob {
                 if design.advance() {
                     return Progress::Running {
                         fraction: design.progress(),
-                        text: TRYING.to_owned(),
+                        text: TRYING.into(),
                     };
                 }
                 Progress::Done(self.0.take().and_then(Design::finish))

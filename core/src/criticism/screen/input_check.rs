@@ -11,6 +11,8 @@ use super::window::Width;
 use crate::controller::{Controller, Logged, controller};
 use crate::diagnosis::{InputCheck, InputVerdict};
 use crate::measurement::Kind;
+use crate::message::{Message, fixed};
+use crate::msg;
 use crate::order::median;
 
 /// Share of the motion that the best of these subsets leaves; all of it where there is none.
@@ -27,7 +29,7 @@ pub(super) fn checked(
     bench: &Bench,
     tried: &[Tried],
 ) -> InputCheck {
-    let say = |verdict, text: String| InputCheck {
+    let say = |verdict, text: Message| InputCheck {
         verdict,
         text,
         plant_told: verdict == InputVerdict::Ok,
@@ -59,7 +61,10 @@ pub(super) fn checked(
         let share = 100.0 * left;
         return say(
             InputVerdict::Ok,
-            format!("The input explains the motion; {share:.1} % of it is left."),
+            msg!(
+                "The input explains the motion; {} % of it is left.",
+                fixed(share, 1)
+            ),
         );
     }
     let follows = || left_by_lags(signals, widths) < UNEXPLAINED;
@@ -72,10 +77,11 @@ pub(super) fn checked(
             let share = 100.0 * turned;
             return say(
                 InputVerdict::Sign,
-                format!(
+                msg!(
                     "The sign of the input is turned: the inertia comes out negative, and with the other sign the \
-                     input explains the motion but for {share:.1} % of it. Give the column with a minus, as in --map \
-                     \"u=-NAME\"."
+                     input explains the motion but for {} % of it. Give the column with a minus, as in --map \
+                     \"u=-NAME\".",
+                    fixed(share, 1)
                 ),
             );
         }
@@ -83,27 +89,27 @@ pub(super) fn checked(
             return say(InputVerdict::InertiaNotTold, text);
         }
         if body_while_calm(signals, widths).is_some() {
-            return say(InputVerdict::Ok, AT_TIMES.to_owned());
+            return say(InputVerdict::Ok, AT_TIMES.into());
         }
         if driven || follows() {
-            return say(InputVerdict::InertiaNotTold, NOT_BY_INERTIA.to_owned());
+            return say(InputVerdict::InertiaNotTold, NOT_BY_INERTIA.into());
         }
     } else if changes_seldom(signals, bench) {
-        return say(InputVerdict::InertiaNotTold, TOO_LITTLE.to_owned());
+        return say(InputVerdict::InertiaNotTold, TOO_LITTLE.into());
     } else if follows() || left_of_forecast(signals) < UNEXPLAINED {
-        return say(InputVerdict::Ok, NOT_AS_A_LAG.to_owned());
+        return say(InputVerdict::Ok, NOT_AS_A_LAG.into());
     } else if may_explain(bench) {
-        return say(InputVerdict::InertiaNotTold, TOO_LITTLE.to_owned());
+        return say(InputVerdict::InertiaNotTold, TOO_LITTLE.into());
     }
     let reason = late(signals, widths, left).map_or_else(
         || {
             "Is it the right column, and was this the input that acted and not one that was measured elsewhere? A \
              motion that something else imposes does not follow from it."
-                .to_owned()
+                .into()
         },
-        |late| format!("It would explain more of it if it acted {late:.3} s later than it is written down."),
+        |late| msg!("It would explain more of it if it acted {} s later than it is written down.", fixed(late, 3)),
     );
-    let text = format!("The input does not explain this motion. {reason}");
+    let text = Message::from("The input does not explain this motion.").and(reason);
     say(InputVerdict::DoesNotExplain, text)
 }
 
@@ -178,7 +184,7 @@ fn may_explain(bench: &Bench) -> bool {
     most * most * about_mean(INPUT) > about_mean(ACCELERATION)
 }
 
-fn closed(made: &Controller, explained: bool) -> String {
+fn closed(made: &Controller, explained: bool) -> Message {
     let Controller {
         law,
         kind,
@@ -191,9 +197,12 @@ fn closed(made: &Controller, explained: bool) -> String {
          steps to the input."
     };
     let share = 100.0 * share;
-    format!(
-        "The loop was closed: a {kind} controller made the input, {law}, which explains {share:.1} % of its variance. {plant}"
-    )
+    msg!(
+        "The loop was closed: a {} controller made the input, {}, which explains {} % of its variance.",
+        kind,
+        law,
+        fixed(share, 1)
+    ).and(plant)
 }
 
 /// What the best subset leaves with the sign of the input turned.
@@ -207,7 +216,7 @@ fn turned(signals: &Signals, widths: &[Width]) -> Option<f64> {
 }
 
 /// Whether friction explains the input, at speeds that hardly change.
-fn not_told(signals: &Signals, bench: &Bench) -> Option<String> {
+fn not_told(signals: &Signals, bench: &Bench) -> Option<Message> {
     let fit = Fit::new(bench.gram, &bench.elements(&[]))?;
     let told = fit.w[0].abs() > TOLD * fit.error(0);
     if told {
@@ -225,13 +234,15 @@ fn not_told(signals: &Signals, bench: &Bench) -> Option<String> {
     let w = reduced.coefficients(&reduced.solve(true)?);
     let steady = reduced.loss(&w) < 0.1 * at(INPUT, INPUT);
     if rests {
-        return Some("The drive rests: this record does not tell its inertia.".to_owned());
+        return Some("The drive rests: this record does not tell its inertia.".into());
     }
     let changes = at(ACCELERATION, ACCELERATION) > 0.0;
     (steady && changes).then(|| {
-        format!(
-            "This record does not tell the inertia ({inertia:.2e} with an error of {error:.1e}): the speed hardly \
-             changes but for its noise. It tells friction. Let the input jump, and sample the run-up."
+        msg!(
+            "This record does not tell the inertia ({} with an error of {}): the speed hardly changes but for its \
+             noise. It tells friction. Let the input jump, and sample the run-up.",
+            format!("{:.2e}", inertia),
+            format!("{:.1e}", error)
         )
     })
 }

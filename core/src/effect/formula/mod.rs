@@ -15,7 +15,9 @@ use serde::{Deserialize, Serialize};
 use super::atom::Values;
 use super::{Atom, Dimension, Effect, EffectId, Moment, Own, ParameterSpec, Part, Probe, Range};
 use crate::measurement::Kind;
+use crate::message::Message;
 use crate::model::{Instant, Model};
+use crate::msg;
 
 pub use parse::{FormulaError, MAX_FORMULA, MAX_PARAMETERS};
 pub(crate) use parse::{Variable, variables};
@@ -72,9 +74,9 @@ impl Formula {
     pub fn effect(&self, kind: Kind) -> Result<&'static dyn Effect, FormulaError> {
         let id = EffectId::own(&self.name).ok_or_else(|| FormulaError {
             column: 1,
-            message: format!(
+            message: msg!(
                 "'{}' is no name for an effect: {}",
-                self.name,
+                Message::name(&self.name),
                 EffectId::OWN_NAMES
             ),
         })?;

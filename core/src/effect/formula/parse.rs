@@ -10,6 +10,8 @@
 //! A name that is no variable and no constant is a parameter.
 
 use crate::measurement::Kind;
+use crate::message::{Message, says};
+use crate::msg;
 
 /// Longest formula, characters.
 pub const MAX_FORMULA: usize = 300;
@@ -25,13 +27,21 @@ const MAX_DEPTH: usize = 30;
 
 /// Why a text is no formula.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("column {column}: {message}")]
 pub struct FormulaError {
     /// Where, in characters from 1.
     pub column: usize,
     /// What is wrong and what would be right.
-    pub message: String,
+    pub message: Message,
 }
+
+impl FormulaError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        msg!("column {}: {}", &self.column, &self.message)
+    }
+}
+
+says!(FormulaError);
 
 /// What a formula may depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +149,10 @@ pub(super) fn parse(text: &str, kind: Kind) -> Result<(Expr, Vec<String>), Formu
     if all.len() > MAX_FORMULA {
         return parser.fail_at(
             MAX_FORMULA,
-            format!("the formula is too long: at most {MAX_FORMULA} characters"),
+            msg!(
+                "the formula is too long: at most {} characters",
+                MAX_FORMULA
+            ),
         );
     }
     parser.skip();
@@ -152,12 +165,15 @@ pub(super) fn parse(text: &str, kind: Kind) -> Result<(Expr, Vec<String>), Formu
     let tree = parser.sum()?;
     if let Some(c) = parser.peek() {
         return parser.fail(match c {
-            ')' => "')' closes nothing: remove it or add an opening one before".to_owned(),
-            ',' => "',' is not understood: write decimals with a point, such as 0.5".to_owned(),
+            ')' => "')' closes nothing: remove it or add an opening one before".into(),
+            ',' => "',' is not understood: write decimals with a point, such as 0.5".into(),
             c if c.is_alphanumeric() || c == '(' => {
-                "an operator is missing here: write * for a product".to_owned()
+                "an operator is missing here: write * for a product".into()
             }
-            c => format!("'{c}' is not understood: expected +, -, *, /, ^ or the end"),
+            c => msg!(
+                "'{}' is not understood: expected +, -, *, /, ^ or the end",
+                Message::name(c)
+            ),
         });
     }
     if parser.parameters.is_empty() {
@@ -183,12 +199,12 @@ struct Parser<'t> {
 }
 
 impl Parser<'_> {
-    fn fail<T>(&self, message: impl Into<String>) -> Result<T, FormulaError> {
+    fn fail<T>(&self, message: impl Into<Message>) -> Result<T, FormulaError> {
         self.fail_at(self.at, message)
     }
 
     #[expect(clippy::unused_self, reason = "reads like fail")]
-    fn fail_at<T>(&self, index: usize, message: impl Into<String>) -> Result<T, FormulaError> {
+    fn fail_at<T>(&self, index: usize, message: impl Into<Message>) -> Result<T, FormulaError> {
         Err(FormulaError {
             column: index + 1,
             message: message.into(),
@@ -216,7 +232,7 @@ impl Parser<'_> {
     fn sum(&mut self) -> Result<Expr, FormulaError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
-            return self.fail(format!("nested too deeply: at most {MAX_DEPTH} levels"));
+            return self.fail(msg!("nested too deeply: at most {} levels", MAX_DEPTH));
         }
         let mut left = self.product()?;
         loop {
@@ -260,7 +276,7 @@ impl Parser<'_> {
         if self.take('^') {
             self.depth += 1;
             if self.depth > MAX_DEPTH {
-                return self.fail(format!("nested too deeply: at most {MAX_DEPTH} levels"));
+                return self.fail(msg!("nested too deeply: at most {} levels", MAX_DEPTH));
             }
             value = Expr::Power(Box::new(value), Box::new(self.factor()?));
             self.depth -= 1;
@@ -285,8 +301,9 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.name(),
-            Some(c) => self.fail(format!(
-                "'{c}' is not understood: expected a number, a name or '('"
+            Some(c) => self.fail(msg!(
+                "'{}' is not understood: expected a number, a name or '('",
+                Message::name(c)
             )),
             None => self.fail("the formula ends too early: expected a number, a name or '('"),
         }
@@ -312,7 +329,7 @@ impl Parser<'_> {
         }
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Expr::Number(value)),
-            _ => self.fail_at(start, format!("'{text}' is no number")),
+            _ => self.fail_at(start, msg!("'{}' is no number", Message::name(text))),
         }
     }
 
@@ -336,17 +353,21 @@ impl Parser<'_> {
             return Ok(Expr::Variable(*variable));
         }
         let wrong = match (name.as_str(), self.kind) {
-            ("", _) => Some("names have letters a to z, digits and _".to_owned()),
-            ("e", _) => Some("write exp(...) for powers of e".to_owned()),
-            ("x" | "v", Kind::Process) => {
-                Some(format!("a process has no {name}; it has y, u and t"))
-            }
-            ("y", Kind::Drive) => Some("a drive has no y; it has x, v, u and t".to_owned()),
-            (n, _) if FUNCTIONS.iter().any(|f| f.0 == n) => {
-                Some(format!("{n} is a function: write {n}(...)"))
-            }
-            (n, _) if n.len() > MAX_NAME => Some(format!(
-                "the name is too long: at most {MAX_NAME} characters"
+            ("", _) => Some("names have letters a to z, digits and _".into()),
+            ("e", _) => Some("write exp(...) for powers of e".into()),
+            ("x" | "v", Kind::Process) => Some(msg!(
+                "a process has no {}; it has y, u and t",
+                Message::name(&name)
+            )),
+            ("y", Kind::Drive) => Some("a drive has no y; it has x, v, u and t".into()),
+            (n, _) if FUNCTIONS.iter().any(|f| f.0 == n) => Some(msg!(
+                "{} is a function: write {}(...)",
+                Message::name(n),
+                Message::name(n)
+            )),
+            (n, _) if n.len() > MAX_NAME => Some(msg!(
+                "the name is too long: at most {} characters",
+                MAX_NAME
             )),
             _ => None,
         };
@@ -358,7 +379,7 @@ impl Parser<'_> {
         if index == MAX_PARAMETERS {
             return self.fail_at(
                 start,
-                format!("too many parameters: at most {MAX_PARAMETERS}"),
+                msg!("too many parameters: at most {}", MAX_PARAMETERS),
             );
         }
         if known.is_none() {
@@ -372,9 +393,10 @@ impl Parser<'_> {
             let names: Vec<&str> = FUNCTIONS.iter().map(|f| f.0).collect();
             return self.fail_at(
                 start,
-                format!(
-                    "'{name}' is no function; there are {}; a product needs *",
-                    names.join(", ")
+                msg!(
+                    "'{}' is no function; there are {}; a product needs *",
+                    Message::name(name),
+                    Message::name(names.join(", "))
                 ),
             );
         };
@@ -389,7 +411,12 @@ impl Parser<'_> {
         if arguments.len() != *count {
             return self.fail_at(
                 start,
-                format!("{name} takes {count} argument(s), not {}", arguments.len()),
+                msg!(
+                    "{} takes {} argument(s), not {}",
+                    Message::name(name),
+                    count,
+                    arguments.len()
+                ),
             );
         }
         Ok(Expr::Call(*function, arguments))

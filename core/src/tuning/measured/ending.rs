@@ -4,6 +4,7 @@ use super::cycle::Cycle;
 use super::evidence::{Evidence, Trouble, TroubleKind, of_unit, trouble};
 use super::number::number as n;
 use super::record::Record;
+use crate::msg;
 use crate::order::{median, range};
 
 /// What is left of a climb that counts as over, as a share of it: the usual band of a settling time.
@@ -46,26 +47,34 @@ fn levels_off(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         }
     });
     let where_to = match (e.target, short) {
-        (Some(target), Some(short)) if short > ERRORS * ends.std_error => format!(
+        (Some(target), Some(short)) if short > ERRORS * ends.std_error => msg!(
             "{}, {} short of the target of {}",
             n(ends.value),
             n(short),
             n(target)
         ),
-        (None, _) if settled => n(ends.value),
+        (None, _) if settled => n(ends.value).into(),
         _ => return None,
     };
     let text = if settled {
-        format!(
-            "The input stays {word} for the last {seconds} s while the output has reached {reached} and levels off at \
-             {where_to}: the relay waits for a threshold that this input cannot reach. A lower target, or a stronger \
-             input, lets it switch."
+        msg!(
+            "The input stays {} for the last {} s while the output has reached {} and levels off at \
+             {}: the relay waits for a threshold that this input cannot reach. A lower target, or a stronger \
+             input, lets it switch.",
+            word,
+            seconds,
+            reached,
+            where_to
         )
     } else {
-        format!(
-            "The input stays {word} for the last {seconds} s while the output has reached {reached} and by the model \
-             goes on to {where_to}: the relay waits for a threshold that this input cannot reach. A lower target, or a \
-             stronger input, lets it switch."
+        msg!(
+            "The input stays {} for the last {} s while the output has reached {} and by the model \
+             goes on to {}: the relay waits for a threshold that this input cannot reach. A lower target, or a \
+             stronger input, lets it switch.",
+            word,
+            seconds,
+            reached,
+            where_to
         )
     };
     Some(trouble(
@@ -88,17 +97,13 @@ fn still_moves(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         let seconds = n(record.time[all - 1] - record.time[since]);
         let by = of_unit(slope.abs(), &record.output_unit);
         let text = if slope > 0.0 {
-            format!(
-                "The input stays {word} for the last {seconds} s and the output still rises at the end, by {by} in a \
+            msg!("The input stays {} for the last {} s and the output still rises at the end, by {} in a \
                  second: the record is too short to say whether the relay would switch. Let the test run on until the \
-                 output has gone round several times, or no longer rises."
-            )
+                 output has gone round several times, or no longer rises.", word, seconds, by)
         } else {
-            format!(
-                "The input stays {word} for the last {seconds} s and the output still falls at the end, by {by} in a \
+            msg!("The input stays {} for the last {} s and the output still falls at the end, by {} in a \
                  second: the record is too short to say whether the relay would switch. Let the test run on until the \
-                 output has gone round several times, or no longer falls."
-            )
+                 output has gone round several times, or no longer falls.", word, seconds, by)
         };
         trouble(TroubleKind::WindowTooShort, !e.told, slope, text)
     })
@@ -168,16 +173,18 @@ pub(super) fn stopped(record: &Record, stop: &Stop) -> Trouble {
         TroubleKind::TargetUnreachable,
         false,
         ends,
-        format!(
-            "After {} switches the input stays {word} for the last {seconds} s, more than two of the longest periods \
+        msg!(
+            "After {} switches the input stays {} for the last {} s, more than two of the longest periods \
              before, while the output, from {} to {}, does not come back to {} where the relay switched: from {} s on \
              the input no longer acts on the plant as it did, or something else does. What is told here is of the \
              record before.",
             stop.switches,
+            word,
+            seconds,
             n(low),
             n(high),
             n(stop.middle),
-            n(record.time[stop.last]),
+            n(record.time[stop.last])
         ),
     )
 }

@@ -6,6 +6,7 @@ use super::cycle::Cycle;
 use super::fit::Fit;
 use super::number::number;
 use super::record::Record;
+use crate::message::Message;
 
 /// What went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,7 +44,7 @@ pub struct Trouble {
     /// The number that shows it.
     pub number: f64,
     /// A sentence with it.
-    pub text: String,
+    pub text: Message,
 }
 
 /// What the causes are looked for in.
@@ -66,7 +67,7 @@ pub(super) struct Evidence<'a> {
 }
 
 /// A cause.
-pub(super) fn trouble(kind: TroubleKind, fatal: bool, number: f64, text: String) -> Trouble {
+pub(super) fn trouble(kind: TroubleKind, fatal: bool, number: f64, text: Message) -> Trouble {
     Trouble {
         kind,
         fatal,

@@ -306,7 +306,7 @@ fn identified(
             omega: point.map_or(f64::NAN, |p| p.omega),
             value: value.map_or([f64::NAN; 2], |v| [v.re, v.im]),
         },
-        model: model.ok_or_else(|| TuningError::NotFinite("the model".to_owned())),
+        model: model.ok_or_else(|| TuningError::NotFinite("the model".into())),
         wish: Wish::default(),
     }
 }

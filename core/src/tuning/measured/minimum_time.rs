@@ -8,6 +8,8 @@ use super::cycle::Cycle;
 use super::evidence::{Evidence, Trouble, TroubleKind, trouble};
 use super::number::number as n;
 use super::record::Record;
+use crate::message::Message;
+use crate::msg;
 use crate::order::{median, range};
 
 /// So many half periods or more are held by a minimum time, where they agree within the first share of a sample and the
@@ -103,17 +105,23 @@ pub(super) fn minimum_time(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
     })
 }
 
-fn held_text(up: bool, least: f64, low: f64, high: f64) -> String {
+fn held_text(up: bool, least: f64, low: f64, high: f64) -> Message {
     let (least, low, high) = (n(least), n(low), n(high));
     if up {
-        format!(
-            "Every time on lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time on \
-             holds the relay, so the cycle is not that of its thresholds."
+        msg!(
+            "Every time on lasts {} s, whatever the output is at its end ({} to {}): a minimum time on \
+             holds the relay, so the cycle is not that of its thresholds.",
+            least,
+            low,
+            high
         )
     } else {
-        format!(
-            "Every time off lasts {least} s, whatever the output is at its end ({low} to {high}): a minimum time off \
-             holds the relay, so the cycle is not that of its thresholds."
+        msg!(
+            "Every time off lasts {} s, whatever the output is at its end ({} to {}): a minimum time off \
+             holds the relay, so the cycle is not that of its thresholds.",
+            least,
+            low,
+            high
         )
     }
 }

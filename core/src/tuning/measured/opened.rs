@@ -1,12 +1,11 @@
 //! What is in a file: a record of a test, or the log of an auto-tuner.
 
-use std::fmt;
-
 use super::log::{self, Held, Log, LogError};
 use super::record::Record;
 use super::report::{MeasuredTuning, tune_record};
 use super::wishes::Wishes;
 use crate::measurement::{ImportError, ImportOptions, Kind, import};
+use crate::message::{Message, says};
 
 /// What was read.
 #[derive(Clone, Debug)]
@@ -14,7 +13,7 @@ pub enum Opened {
     /// The log of an auto-tuner.
     Log(Box<Log>),
     /// A record, and what is to be said of how it was read.
-    Record(Box<Record>, Vec<String>),
+    Record(Box<Record>, Vec<Message>),
 }
 
 /// Why nothing was read.
@@ -26,14 +25,17 @@ pub enum OpenError {
     Import(ImportError),
 }
 
-impl fmt::Display for OpenError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl OpenError {
+    /// In words.
+    pub fn message(&self) -> Message {
         match self {
-            Self::Log(error) => error.fmt(f),
-            Self::Import(error) => error.fmt(f),
+            Self::Log(error) => error.message(),
+            Self::Import(error) => error.message(),
         }
     }
 }
+
+says!(OpenError);
 
 /// Reads a file. It may be a log where nothing is said about its columns.
 ///

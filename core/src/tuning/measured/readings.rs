@@ -17,6 +17,8 @@ use super::number::{full_scale, number};
 use super::record::RecordError;
 use super::report::{Conventional, MeasuredTuning, Settings, Summary};
 use super::ultimate::MeasuredUltimate;
+use crate::message::Message;
+use crate::msg;
 
 /// The phase counts as -180 degrees up to this many degrees beside it.
 const NEAR: f64 = 3.0;
@@ -55,14 +57,19 @@ pub struct Readings {
     pub unequal: bool,
 }
 
-fn check(name: &str, value: f64, fits: bool, range: &str) -> Result<(), RecordError> {
+fn check(
+    name: &'static str,
+    value: f64,
+    fits: bool,
+    range: impl Into<Message>,
+) -> Result<(), RecordError> {
     if value.is_finite() && fits {
         return Ok(());
     }
     Err(RecordError::Reading {
-        name: name.to_owned(),
+        name: Box::new(name.into()),
         value,
-        range: range.to_owned(),
+        range: Box::new(range.into()),
     })
 }
 
@@ -96,7 +103,7 @@ impl Readings {
             "a number other than the lower level",
         )?;
         let a = self.half_amplitude();
-        let range = format!(
+        let range = msg!(
             "0 or more, and less than the amplitude of {} (half of peak to peak)",
             number(a)
         );
@@ -104,7 +111,7 @@ impl Readings {
             "the hysteresis",
             self.hysteresis,
             (0.0..a).contains(&self.hysteresis),
-            &range,
+            range,
         )?;
         if let Some([up, down]) = self.half_periods {
             let fits = up > 0.0 && down > 0.0 && ((up + down) / self.period - 1.0).abs() < 0.01;
@@ -177,7 +184,7 @@ impl Readings {
         let (number, text) = match self.half_periods {
             Some([up, down]) if !self.symmetric() => (
                 up.min(down) / up.max(down),
-                format!(
+                msg!(
                     "The half periods of {} s and {} s differ: 4d/(πa) does not hold for such a cycle. Lags with dead \
                      time that have this very cycle lie all over the error of the point; the record of the test \
                      narrows it.",
@@ -190,7 +197,7 @@ impl Readings {
                 "The half periods are known to differ, but not by how much: without them amplitude and period do not \
                  tell the phase of the cycle, so no point and no gains follow. Give the times up and down, or the \
                  record of the test."
-                    .to_owned(),
+                    .into(),
             ),
             _ => return None,
         };
@@ -235,7 +242,7 @@ pub fn tune_readings(
     let gains = gains::all(&basis, settings.form, scale);
     let half_periods = readings.half_periods.unwrap_or([0.5 * readings.period; 2]);
     let mut result = MeasuredTuning {
-        name: "the numbers".to_owned(),
+        name: "the numbers".into(),
         cycle: Some(Summary {
             period: readings.period,
             amplitude: a,
@@ -257,17 +264,17 @@ pub fn tune_readings(
         notes: settings.notes.clone(),
         input_unit: "1".to_owned(),
         output_unit: "1".to_owned(),
-        text: String::new(),
+        text: Message::default(),
     };
     if readings.half_periods.is_none() && !readings.unequal {
         result.notes.push(
-            "The half periods were taken as equal; where they are not, give them: the point is another then.".to_owned(),
+            "The half periods were taken as equal; where they are not, give them: the point is another then.".into(),
         );
     }
     result.notes.push(
         "From numbers alone the waveform is not known: the errors are those of not knowing it. The record of the test \
          tells more, and gives models."
-            .to_owned(),
+            .into(),
     );
     result.tell();
     Ok(result)

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurement;
+use crate::message::{Message, says};
+use crate::msg;
 use crate::order::{distinct, median, range};
 
 /// Fewest samples from which a model can be had.
@@ -35,28 +37,16 @@ pub struct Record {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum RecordError {
     /// Too few samples.
-    #[error("{0} samples are too few: a relay test needs {FEWEST} or more")]
     TooShort(usize),
     /// Columns of different length.
-    #[error("time, input and output have {0}, {1} and {2} values: they must be as many")]
     Lengths(usize, usize, usize),
     /// A value that is no number, or time that does not increase.
-    #[error("sample {0} is not a number, or its time is not after that of the sample before")]
     Sample(usize),
     /// The output never moves.
-    #[error(
-        "the output is {0} from the first sample to the last: there is nothing to learn from it"
-    )]
     Still(f64),
     /// The input never moves.
-    #[error(
-        "the input is {0} from the first sample to the last: a test needs an input that changes, so record what the heater or valve was told as well"
-    )]
     NoInput(f64),
     /// The relay never switches while the output goes somewhere.
-    #[error(
-        "the input is {input} from the first sample to the last, while the output goes from {from} to {to}: the relay never switched, since {to} is short of its threshold; a lower target, a stronger input or a longer test lets it switch"
-    )]
     NeverSwitched {
         /// The input.
         input: f64,
@@ -66,16 +56,61 @@ pub enum RecordError {
         to: f64,
     },
     /// A number read off a test that cannot be.
-    #[error("{name} is {value}: it must be {range}")]
     Reading {
         /// Its name.
-        name: String,
+        name: Box<Message>,
         /// What it was.
         value: f64,
         /// What it may be.
-        range: String,
+        range: Box<Message>,
     },
 }
+
+impl RecordError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::TooShort(given) => msg!(
+                "{} samples are too few: a relay test needs {} or more",
+                given,
+                FEWEST
+            ),
+            Self::Lengths(first, second, third) => msg!(
+                "time, input and output have {}, {} and {} values: they must be as many",
+                first,
+                second,
+                third
+            ),
+            Self::Sample(given) => msg!(
+                "sample {} is not a number, or its time is not after that of the sample before",
+                given
+            ),
+            Self::Still(given) => msg!(
+                "the output is {} from the first sample to the last: there is nothing to learn from it",
+                given
+            ),
+            Self::NoInput(given) => msg!(
+                "the input is {} from the first sample to the last: a test needs an input that changes, so record \
+                 what the heater or valve was told as well",
+                given
+            ),
+            Self::NeverSwitched { input, from, to } => msg!(
+                "the input is {} from the first sample to the last, while the output goes from {} to {}: the relay \
+                 never switched, since {} is short of its threshold; a lower target, a stronger input or a longer \
+                 test lets it switch",
+                input,
+                from,
+                to,
+                to
+            ),
+            Self::Reading { name, value, range } => {
+                msg!("{} is {}: it must be {}", &**name, value, &**range)
+            }
+        }
+    }
+}
+
+says!(RecordError);
 
 impl Record {
     /// Input and first output of a measurement.

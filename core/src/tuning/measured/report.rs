@@ -15,8 +15,10 @@ use super::record::{Record, RecordError};
 use super::structure::{FittedModel, Value};
 use super::trouble;
 use super::ultimate::{self, MeasuredUltimate};
+use crate::message::Message;
+use crate::msg;
 use crate::order::range;
-use crate::uncertain::{NOT_TOLD, with_error, with_uncertainty};
+use crate::uncertain::{is_told, with_error, with_uncertainty};
 
 /// Part of the record that is taken for the plant's time where there is no cycle.
 const PART: f64 = 0.1;
@@ -49,7 +51,7 @@ pub struct Settings {
     /// Half the distance of the thresholds of the test, in the unit of the output.
     pub hysteresis: Option<f64>,
     /// What else is to be said of it, as by the reader of a log.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
 }
 
 /// The cycle in a few numbers.
@@ -101,13 +103,13 @@ pub struct MeasuredTuning {
     /// What went wrong or misleads, the fatal first.
     pub troubles: Vec<Trouble>,
     /// What else is to be said.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
     /// Unit of the input.
     pub input_unit: String,
     /// Unit of the output.
     pub output_unit: String,
     /// What it means, in sentences.
-    pub text: String,
+    pub text: Message,
 }
 
 /// What the record tells.
@@ -206,7 +208,7 @@ pub fn tune_record(record: &Record, settings: &Settings) -> Result<MeasuredTunin
         notes: settings.notes.clone(),
         input_unit: record.input_unit.clone(),
         output_unit: record.output_unit.clone(),
-        text: String::new(),
+        text: Message::default(),
     };
     result.tell();
     Ok(result)
@@ -225,16 +227,16 @@ fn cycle_and_chatter(record: &Record) -> [Option<Cycle>; 2] {
 
 /// The static gain of a model, where it has one and the record tells it.
 fn static_gain(model: &FittedModel) -> Option<Value> {
-    Some(model.gain).filter(|gain| !model.structure.integrates() && is_told(gain))
+    Some(model.gain).filter(|gain| !model.structure.integrates() && tells(gain))
 }
 
-fn is_told(gain: &Value) -> bool {
+fn tells(gain: &Value) -> bool {
     gain.std_error <= GAIN_TOLD * gain.value.abs()
 }
 
 /// Whether a model is more of the record than what was left for it by chance.
 fn follows(model: &FittedModel) -> bool {
-    model.left <= FOLLOWED || is_told(&model.gain)
+    model.left <= FOLLOWED || tells(&model.gain)
 }
 
 /// A time in the order of the plant's, s: that of a round of the output, or a part of the record.
@@ -264,11 +266,8 @@ impl MeasuredTuning {
     }
 
     /// The first fatal cause, in words.
-    pub fn stall(&self) -> Option<&str> {
-        self.troubles
-            .iter()
-            .find(|t| t.fatal)
-            .map(|t| t.text.as_str())
+    pub fn stall(&self) -> Option<&Message> {
+        self.troubles.iter().find(|t| t.fatal).map(|t| &t.text)
     }
 
     /// Unit of the gain from input to output.
@@ -281,12 +280,12 @@ impl MeasuredTuning {
 
     /// Puts it into words.
     pub(super) fn tell(&mut self) {
-        self.text = self.sentences().join(" ");
+        self.text = Message::list(" ", self.sentences());
     }
 
     /// The same, one by one: the point, the ultimate gain, the model, what went wrong, and notes.
-    pub fn sentences(&self) -> Vec<String> {
-        let mut sentences: Vec<String> = self.of_point().into_iter().collect();
+    pub fn sentences(&self) -> Vec<Message> {
+        let mut sentences: Vec<Message> = self.of_point().into_iter().collect();
         sentences.extend(self.of_turned());
         sentences.extend(self.of_ultimate());
         sentences.extend(self.of_formula());
@@ -294,25 +293,25 @@ impl MeasuredTuning {
             sentences.push(self.of_model(model));
         }
         if self.gains.is_empty() {
-            sentences.push(self.no_gains().to_owned());
+            sentences.push(self.no_gains().into());
         }
         sentences.extend(self.troubles.iter().map(|t| t.text.clone()));
         sentences.extend(self.notes.iter().cloned());
         sentences
     }
 
-    fn of_point(&self) -> Option<String> {
+    fn of_point(&self) -> Option<Message> {
         let (cycle, point) = (self.cycle.as_ref()?, self.point.as_ref()?);
         if !point.is_known() {
-            return Some(format!(
+            return Some(msg!(
                 "The cycle (period {} s, amplitude {}, half of peak to peak) does not show the plant: |P| at {} rad/s \
                  is not determined by this record.",
                 number(cycle.period),
                 number(cycle.amplitude),
-                number(point.omega),
+                number(point.omega)
             ));
         }
-        Some(format!(
+        Some(msg!(
             "The cycle (period {} s, amplitude {}, half of peak to peak) shows the plant at {} rad/s: |P| {}, phase {} \
              degrees.",
             number(cycle.period),
@@ -324,7 +323,7 @@ impl MeasuredTuning {
                 &self.gain_unit()
             ),
             with_uncertainty(point.phase_deg, point.std_error_phase_deg)
-                .unwrap_or_else(|| number(point.phase_deg)),
+                .unwrap_or_else(|| number(point.phase_deg))
         ))
     }
 
@@ -345,64 +344,65 @@ impl MeasuredTuning {
     }
 
     /// Where the point is for a controller of a plant of negative gain.
-    fn of_turned(&self) -> Option<String> {
+    fn of_turned(&self) -> Option<Message> {
         let point = self.point.filter(|p| self.sign() < 0.0 && p.is_known())?;
-        Some(format!(
+        Some(msg!(
             "Its gain is negative: with the input turned, as its controller turns it, the phase is {} degrees.",
-            number(point.turned().phase_deg),
+            number(point.turned().phase_deg)
         ))
     }
 
     /// Ultimate gain and period, or why they do not follow and what would help.
-    fn of_ultimate(&self) -> Option<String> {
+    fn of_ultimate(&self) -> Option<Message> {
         if let Some(u) = &self.ultimate {
-            return Some(format!(
+            return Some(msg!(
                 "Ultimate gain {}, ultimate period {}.",
                 with_error(u.gain, u.std_error_gain, "1"),
-                with_error(u.period, u.std_error_period, "s"),
+                with_error(u.period, u.std_error_period, "s")
             ));
         }
         let (point, cycle) = (self.point.as_ref()?, self.cycle.as_ref()?);
         if !point.is_known() {
-            return Some("The ultimate gain does not follow.".to_owned());
+            return Some("The ultimate gain does not follow.".into());
         }
         let off = point.beyond(self.sign());
         let held = (self.troubles.iter()).any(|t| t.kind == TroubleKind::MinimumTime);
-        let remedy = if held {
-            "a relay without a minimum time brings the cycle nearer to it".to_owned()
+        let remedy: Message = if held {
+            "a relay without a minimum time brings the cycle nearer to it".into()
         } else if cycle.hysteresis > MUCH_HYSTERESIS * cycle.amplitude && off > 0.0 {
-            format!(
+            msg!(
                 "less hysteresis (it is {}, the amplitude {}) brings the cycle nearer to it",
                 number(cycle.hysteresis),
                 number(cycle.amplitude)
             )
         } else if self.models.is_empty() {
-            "the record of the test would show how the curve goes on".to_owned()
+            "the record of the test would show how the curve goes on".into()
         } else if off < 0.0 {
-            "a relay that switches sooner, without delay, brings the cycle nearer to it".to_owned()
+            "a relay that switches sooner, without delay, brings the cycle nearer to it".into()
         } else {
             "a longer test, a bias that makes the half periods differ, or a second test with another hysteresis or an \
              added delay settles it"
-                .to_owned()
+                .into()
         };
-        Some(format!(
+        Some(msg!(
             "The ultimate gain does not follow: the phase of the cycle is {} degrees from -180, and how the curve goes \
-             on from there is not known well enough; {remedy}.",
+             on from there is not known well enough; {}.",
             number(off.abs()),
+            remedy
         ))
     }
 
     /// What the usual formula makes of the same cycle.
-    fn of_formula(&self) -> Option<String> {
+    fn of_formula(&self) -> Option<Message> {
         let formula = self.conventional?;
-        Some(format!(
+        Some(msg!(
             "4d/(πa), which holds only for a symmetric cycle without hysteresis, would give {} at {} s.",
             number(formula.gain),
             number(formula.period)
         ))
     }
 
-    fn of_model(&self, model: &FittedModel) -> String {
+    fn of_model(&self, model: &FittedModel) -> Message {
         let unit = self.gain_unit();
         let lags = model.time_constants.iter();
         let all = std::iter::once(("gain", model.gain, unit.as_str()))
@@ -410,39 +410,45 @@ impl MeasuredTuning {
             .chain(model.zero.iter().map(|z| ("zero", *z, "s")))
             .chain([("dead time", model.dead_time, "s")]);
         let (told, untold): (Vec<_>, Vec<_>) =
-            all.partition(|(_, v, _)| with_error(v.value, v.std_error, "1") != NOT_TOLD);
-        let parts: Vec<String> = told
+            all.partition(|(_, v, _)| is_told(v.value, v.std_error));
+        let parts = told
             .iter()
-            .map(|(name, v, unit)| format!("{name} {}", with_error(v.value, v.std_error, unit)))
-            .collect();
+            .map(|(name, v, unit)| msg!("{} {}", name, with_error(v.value, v.std_error, unit)));
+        let parts = Message::list(", ", parts);
         if !follows(model) {
-            return format!(
+            return msg!(
                 "No model follows the record: the one that comes nearest, {}, misses {} % of the motion of the output.",
                 model.structure.name(),
-                number(100.0 * model.left),
+                number(100.0 * model.left)
             );
         }
         let (name, left) = (model.structure.name(), number(100.0 * model.left));
         if told.is_empty() {
-            return format!(
-                "The record prefers {name}, but determines none of its numbers. It misses {left} % of the motion of \
-                 the output."
+            return msg!(
+                "The record prefers {}, but determines none of its numbers. It misses {} % of the motion of \
+                 the output.",
+                name,
+                left
             );
         }
         if untold.is_empty() {
-            return format!(
-                "The record prefers {name}: {}. It misses {left} % of the motion of the output.",
-                parts.join(", ")
+            return msg!(
+                "The record prefers {}: {}. It misses {} % of the motion of the output.",
+                name,
+                parts,
+                left
             );
         }
         // Each name once, however many time constants there are.
-        let mut names: Vec<&str> = untold.iter().map(|u| u.0).collect();
+        let mut names: Vec<&'static str> = untold.iter().map(|u| u.0).collect();
         names.dedup();
-        format!(
-            "The record prefers {name}: {}; not determined by this record: {}. It misses {left} % of the motion of the \
+        msg!(
+            "The record prefers {}: {}; not determined by this record: {}. It misses {} % of the motion of the \
              output.",
-            parts.join(", "),
-            names.join(", ")
+            name,
+            parts,
+            Message::list(", ", names),
+            left
         )
     }
 }

@@ -9,6 +9,7 @@ use super::record::Record;
 use crate::controller::{Logged, controller};
 use crate::count::counted;
 use crate::measurement::Kind;
+use crate::msg;
 use crate::order::{distinct, median, range};
 
 /// The shorter half period over the longer, below which heating and cooling count as of different strength.
@@ -78,10 +79,8 @@ fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
             TroubleKind::HeaterTooWeak,
             false,
             share,
-            format!(
-                "The input is up {percent} % of the time: it is only just strong enough for this set point, so a \
-                 controller has little left to act with."
-            ),
+            msg!("The input is up {} % of the time: it is only just strong enough for this set point, so a \
+                 controller has little left to act with.", percent),
         )
     });
     let asymmetric = (ratio < SYMMETRIC).then(|| {
@@ -89,14 +88,16 @@ fn of_cycle(e: &Evidence<'_>, cycle: &Cycle) -> Vec<Option<Trouble>> {
             TroubleKind::Asymmetric,
             false,
             ratio,
-            format!(
-                "The {slower} takes {} times as long as the {faster} ({} s against {} s): 4d/(πa) does not hold for \
-                 such a cycle; levels whose middle is {} instead of {} would make it symmetric.",
+            msg!(
+                "The {} takes {} times as long as the {} ({} s against {} s): 4d/(πa) does not hold for such a \
+                 cycle; levels whose middle is {} instead of {} would make it symmetric.",
+                slower,
                 n(1.0 / ratio),
+                faster,
                 n(up.max(down)),
                 n(up.min(down)),
                 n(cycle.levels[0] + share * (cycle.levels[1] - cycle.levels[0])),
-                n(0.5 * (cycle.levels[0] + cycle.levels[1])),
+                n(0.5 * (cycle.levels[0] + cycle.levels[1]))
             ),
         )
     });
@@ -121,17 +122,16 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             n(cycle.hysteresis.max(0.0)),
         );
         let text = if flickers > FLICKERS {
-            format!(
-                "The relay flickers {} times at each switch: the noise ({noise}) is of the size of the hysteresis \
-                 ({hysteresis}). Three times the noise as hysteresis, or a filter, ends it.",
-                n(flickers),
-            )
+            msg!("The relay flickers {} times at each switch: the noise ({}) is of the size of the hysteresis \
+                 ({}). Three times the noise as hysteresis, or a filter, ends it.", n(flickers), noise, hysteresis)
         } else {
-            format!(
-                "The relay flickers {} in {} half periods: the noise ({noise}) is of the size of the hysteresis \
-                 ({hysteresis}). Three times the noise as hysteresis, or a filter, ends it.",
+            msg!(
+                "The relay flickers {} in {} half periods: the noise ({}) is of the size of the hysteresis ({}). \
+                 Three times the noise as hysteresis, or a filter, ends it.",
                 counted(cycle.flicker, "time"),
                 n(half_periods),
+                noise,
+                hysteresis
             )
         };
         trouble(TroubleKind::NoiseLargerThanHysteresis, false, level, text)
@@ -161,12 +161,12 @@ fn chatter(e: &Evidence<'_>, cycle: &Cycle) -> Trouble {
         TroubleKind::NoiseLargerThanHysteresis,
         true,
         level,
-        format!(
+        msg!(
             "Noise switches the relay, every {} s on average and at random: the noise ({}) is not small beside the \
              hysteresis ({}), so there is no cycle to read. Three times the noise as hysteresis, or a filter, ends it.",
             n(0.5 * cycle.period),
             of_unit(level, &e.record.output_unit),
-            n(cycle.hysteresis.max(0.0)),
+            n(cycle.hysteresis.max(0.0))
         ),
     )
 }
@@ -181,13 +181,8 @@ fn quantised(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             TroubleKind::Quantised,
             false,
             steps,
-            format!(
-                "The amplitude of {} is only {} steps of the sensor ({}): a larger swing or a finer sensor would tell \
-                 more.",
-                n(cycle.amplitude),
-                n(steps),
-                n(step),
-            ),
+            msg!("The amplitude of {} is only {} steps of the sensor ({}): a larger swing or a finer sensor would tell \
+                 more.", n(cycle.amplitude), n(steps), n(step)),
         )
     })
 }
@@ -224,12 +219,13 @@ fn drift(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             TroubleKind::Drift,
             false,
             share,
-            format!(
-                "From the first to the last period the {word} drifts from {} to {}, {} % of its swing: the plant was \
-                 not settled when the test began, or something else acts on it.",
+            msg!(
+                "From the first to the last period the {} drifts from {} to {}, {} % of its swing: the plant was not \
+                 settled when the test began, or something else acts on it.",
+                word,
                 n(ends.0),
                 of_unit(ends.1, unit),
-                n(100.0 * share.abs()),
+                n(100.0 * share.abs())
             ),
         )
     })
@@ -249,7 +245,7 @@ fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
             TroubleKind::NoRelay,
             false,
             high - low,
-            format!(
+            msg!(
                 "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
                  models are fitted to the record as it is.",
                 n(low),
@@ -294,7 +290,7 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
     }
     if explained > FOLLOWS {
         let slope = uy / yy;
-        let text = format!(
+        let text = msg!(
             "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the \
              models below are as much of it as of the plant. Record a step or a relay test with the controller off.",
             n(slope),
@@ -311,10 +307,11 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
         output: &record.output,
         place: &[],
     })?;
-    let text = format!(
+    let text = msg!(
         "A {} controller made the input, {}: this is no relay test. Where its set point or its limits moved the input, \
          the models are those of the plant.",
-        made.kind, made.law
+        made.kind,
+        made.law
     );
     Some(trouble(
         TroubleKind::Controller,
@@ -340,16 +337,12 @@ fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
             counted(rounds, "time"),
         );
         let text = if e.told {
-            format!(
-                "In {seconds} s the input switches {switched} and the output goes round {went}: there is no cycle to \
-                 read, for which at least {WHOLE_PERIODS} whole periods after the first are needed; what is told here \
-                 is by the models, fitted to the record as it is."
-            )
+            msg!("In {} s the input switches {} and the output goes round {}: there is no cycle to \
+                 read, for which at least {} whole periods after the first are needed; what is told here \
+                 is by the models, fitted to the record as it is.", seconds, switched, went, WHOLE_PERIODS)
         } else {
-            format!(
-                "In {seconds} s the input switches {switched} and the output goes round {went}: the window is too \
-                 short, at least {WHOLE_PERIODS} whole periods after the first are needed."
-            )
+            msg!("In {} s the input switches {} and the output goes round {}: the window is too \
+                 short, at least {} whole periods after the first are needed.", seconds, switched, went, WHOLE_PERIODS)
         };
         trouble(TroubleKind::WindowTooShort, !e.told, rounds as f64, text)
     })

@@ -2,6 +2,7 @@
 
 use super::gains::Form;
 use super::report::Settings;
+use crate::message::Message;
 
 /// What the user wants besides; it beats what a log says.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -21,7 +22,7 @@ pub struct Wishes {
 
 impl Wishes {
     /// The same for a record or for numbers.
-    pub fn settings(&self, notes: Vec<String>) -> Settings {
+    pub fn settings(&self, notes: Vec<Message>) -> Settings {
         Settings {
             form: self.form.unwrap_or_default(),
             full_scale: self.full_scale,

@@ -7,6 +7,8 @@ mod settings;
 mod words;
 
 use hysteron_core::explore::ExploreInput;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::on_off::{OnOffCycle, OnOffInput};
 use hysteron_work::tasks::OnOffTask;
 use serde_json::{Value, json};
@@ -151,7 +153,7 @@ impl OnOff {
             "Give it minimum times, as a compressor needs them: how far does the output swing then?"
         };
         Some(Hint {
-            sentence: sentence.to_owned(),
+            sentence: sentence.into(),
             commands: vec![Command::Set("explore", "on_off", json!(next))],
         })
     }
@@ -176,20 +178,23 @@ impl OnOff {
 }
 
 /// Whether the cycle lasts.
-fn lasting(cycle: &OnOffCycle) -> Option<String> {
+fn lasting(cycle: &OnOffCycle) -> Option<Message> {
     let Some(stable) = cycle.stable else {
         return cycle
             .multiplier
-            .map(|_| "Another start leads to another cycle beside this one.".to_owned());
+            .map(|_| "Another start leads to another cycle beside this one.".into());
     };
     let rate = cycle.multiplier?;
-    let (verdict, way) = if stable {
-        ("Stable", "shrinks")
-    } else {
-        ("Unstable", "grows")
-    };
     let percent = hysteron_core::explore::percent(rate);
-    Some(format!(
-        "{verdict}: a small disturbance {way} to {percent} in one period."
-    ))
+    Some(if stable {
+        msg!(
+            "Stable: a small disturbance shrinks to {} in one period.",
+            percent
+        )
+    } else {
+        msg!(
+            "Unstable: a small disturbance grows to {} in one period.",
+            percent
+        )
+    })
 }

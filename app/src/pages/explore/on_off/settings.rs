@@ -1,6 +1,8 @@
 //! What a relay has as it is built, beside what every relay has.
 
 use hysteron_core::explore::ExploreInput;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::on_off::{GivenPlant, OnOffInput, OnOffRelay};
 use hysteron_core::relay::Relay;
 use serde::{Deserialize, Serialize};
@@ -161,14 +163,14 @@ impl Settings {
     ///
     /// # Errors
     /// One sentence.
-    pub fn check(&self, controller: Controller, shared: &ExploreInput) -> Result<(), String> {
+    pub fn check(&self, controller: Controller, shared: &ExploreInput) -> Result<(), Message> {
         let values = [self.sampling, self.z.sampling];
         let coefficients = self.z.numerator.iter().chain(&self.z.denominator);
         let times = values.iter().all(|v| v.is_finite() && *v >= 0.0);
         if !times || !self.start.is_finite() || coefficients.into_iter().any(|c| !c.is_finite()) {
-            return Err("This loop is not possible: a sampling time, a start or a coefficient is out of range.".to_owned());
+            return Err("This loop is not possible: a sampling time, a start or a coefficient is out of range.".into());
         }
         let input = self.input(controller, shared);
-        (input.relay.validate()).map_err(|e| format!("This loop is not possible: {e}."))
+        (input.relay.validate()).map_err(|e| msg!("This loop is not possible: {}.", e))
     }
 }

@@ -1,5 +1,7 @@
 //! What is said of an on-off loop.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::on_off::{Balance, OnOffCycle, OnOffData, OnOffInput, Position};
 use hysteron_core::uncertain::{brief, digits, quantity};
 
@@ -29,7 +31,7 @@ fn one_sided(input: &OnOffInput) -> bool {
 }
 
 /// The answer.
-pub fn answer(input: &OnOffInput, data: &OnOffData) -> String {
+pub fn answer(input: &OnOffInput, data: &OnOffData) -> Message {
     if let Some(position) = data.rests {
         return match position {
             Position::Off => {
@@ -41,22 +43,24 @@ pub fn answer(input: &OnOffInput, data: &OnOffData) -> String {
             Position::Down if one_sided(input) => "It stays off and no longer switches.",
             _ => "It no longer switches: the output does not reach the other threshold.",
         }
-        .to_owned();
+        .into();
     }
     match cycle(data) {
         Some(cycle) => {
             let [low, high] = cycle.range.map(|v| digits(v, DIGITS));
-            format!(
-                "It oscillates between {low} and {high}, with a period of {}.",
+            msg!(
+                "It oscillates between {} and {}, with a period of {}.",
+                low,
+                high,
                 quantity(cycle.period, "s")
             )
         }
-        None => "It oscillates in a pattern that does not repeat.".to_owned(),
+        None => "It oscillates in a pattern that does not repeat.".into(),
     }
 }
 
 /// What the answer rests on, sentence by sentence.
-pub fn reasons(input: &OnOffInput, data: &OnOffData) -> Vec<String> {
+pub fn reasons(input: &OnOffInput, data: &OnOffData) -> Vec<Message> {
     if data.rests.is_some() {
         return Vec::new();
     }
@@ -67,25 +71,25 @@ pub fn reasons(input: &OnOffInput, data: &OnOffData) -> Vec<String> {
 }
 
 /// The exact cycle, or that there is none.
-fn exactly(input: &OnOffInput, data: &OnOffData) -> String {
+fn exactly(input: &OnOffInput, data: &OnOffData) -> Message {
     let Some(cycle) = &data.exact else {
         return if data.simulated.is_some() {
             "The simulation repeats itself, but no exact cycle was found beside it."
         } else {
             "There is no exact cycle to compare with: no pattern of up to 24 switches repeats."
         }
-        .to_owned();
+        .into();
     };
     let count = cycle.positions.len();
     if count > TOLD {
-        return format!("Exact cycle: {count} switches in each period.");
+        return msg!("Exact cycle: {} switches in each period.", count);
     }
-    let parts: Vec<String> = cycle
-        .positions
-        .iter()
-        .map(|(position, time)| format!("{} {}", name(input, *position), quantity(*time, "s")))
-        .collect();
-    format!("Exact cycle: {}.", parts.join(", "))
+    let parts = cycle.positions.iter();
+    let parts = parts.map(|(position, time)| {
+        let words = format!("{} {{}}", name(input, *position));
+        Message::Words(words.into(), vec![quantity(*time, "s").into()])
+    });
+    msg!("Exact cycle: {}.", Message::list(", ", parts))
 }
 
 fn name(input: &OnOffInput, position: Position) -> &'static str {
@@ -97,16 +101,18 @@ fn name(input: &OnOffInput, position: Position) -> &'static str {
 }
 
 /// What the describing function says beside it.
-fn first_harmonic(input: &OnOffInput, data: &OnOffData) -> Option<String> {
+fn first_harmonic(input: &OnOffInput, data: &OnOffData) -> Option<Message> {
     let relay = &input.relay;
     let Some(all) = &data.describing_function else {
         return Some(
             if relay.has_three_positions() {
-                "No describing function here: with three positions it needs a reference of 0 and pushes of the same strength."
+                "No describing function here: with three positions it needs a reference of 0 and pushes of the same \
+                 strength."
             } else {
-                "No describing function here: in discrete time it needs a reference of 0 and pushes of the same strength."
+                "No describing function here: in discrete time it needs a reference of 0 and pushes of the same \
+                 strength."
             }
-            .to_owned(),
+            .into(),
         );
     };
     if all.is_empty() {
@@ -117,15 +123,15 @@ fn first_harmonic(input: &OnOffInput, data: &OnOffData) -> Option<String> {
             } else {
                 "The describing function sees no oscillation."
             }
-            .to_owned(),
+            .into(),
         );
     }
     let (found, cycle) = (balance(data)?, cycle(data)?);
-    Some(format!(
+    Some(msg!(
         "The describing function predicts a period of {} ({}) and an amplitude of {} ({}).",
         quantity(found.period, "s"),
         difference(found.period, cycle.period),
         brief(found.amplitude),
-        difference(found.amplitude, cycle.amplitude),
+        difference(found.amplitude, cycle.amplitude)
     ))
 }

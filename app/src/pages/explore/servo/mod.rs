@@ -158,7 +158,7 @@ impl Hunting {
             }
         };
         Some(Hint {
-            sentence: sentence.to_owned(),
+            sentence: sentence.into(),
             commands: vec![Command::Set("explore", "servo", json!(next))],
         })
     }

@@ -1,6 +1,8 @@
 //! What is set of a drive and the controller of its position.
 
 use hysteron_core::hunting::{Cogging, Controller, Friction, Servo};
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use serde::{Deserialize, Serialize};
 
 /// Degrees in a radian: values are kept in rad, and shown so.
@@ -103,12 +105,12 @@ impl Settings {
     ///
     /// # Errors
     /// One sentence.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check(&self) -> Result<(), Message> {
         let optional = [self.cogging, self.per_turn, self.limit, self.tracking_time];
         if optional.iter().any(|v| !v.is_finite() || *v < 0.0) {
-            return Err("This servo is not possible: a value is below 0.".to_owned());
+            return Err("This servo is not possible: a value is below 0.".into());
         }
         let checked = self.servo().validate();
-        checked.map_err(|e| format!("This servo is not possible: {e}."))
+        checked.map_err(|e| msg!("This servo is not possible: {}.", e))
     }
 }

@@ -1,6 +1,8 @@
 //! What is said of a servo.
 
 use hysteron_core::hunting::{HuntingBalance, HuntingCycle, HuntingData, Servo};
+use hysteron_core::message::{Message, fixed};
+use hysteron_core::msg;
 use hysteron_core::uncertain::brief;
 
 use super::super::cycle_table::difference;
@@ -62,26 +64,26 @@ fn swing(period: f64, amplitude: f64) -> [String; 2] {
 }
 
 /// The answer.
-pub fn answer(servo: &Servo, data: &HuntingData) -> String {
+pub fn answer(servo: &Servo, data: &HuntingData) -> Message {
     match (verdict(servo, data), cycle(data)) {
         (Verdict::Hunts, Some(cycle)) => {
             let [frequency, amplitude] = swing(cycle.period, cycle.amplitude);
-            format!("It hunts: {frequency} Hz, ±{amplitude}°.")
+            msg!("It hunts: {} Hz, ±{}°.", frequency, amplitude)
         }
         (Verdict::StopsShort, _) => {
             let error = brief(data.error_at_rest.unwrap_or(0.0).abs().to_degrees());
-            format!("It settles, {error}° from where it should be.")
+            msg!("It settles, {}° from where it should be.", error)
         }
-        (Verdict::Settles, _) => "It settles where it should be.".to_owned(),
-        (Verdict::RunsAway, _) => "It runs away: the loop is unstable.".to_owned(),
+        (Verdict::Settles, _) => "It settles where it should be.".into(),
+        (Verdict::RunsAway, _) => "It runs away: the loop is unstable.".into(),
         (Verdict::Hunts | Verdict::HuntsWithoutPattern, _) => {
-            "It hunts, in a pattern that does not repeat.".to_owned()
+            "It hunts, in a pattern that does not repeat.".into()
         }
     }
 }
 
 /// What the answer rests on, sentence by sentence.
-pub fn reasons(servo: &Servo, data: &HuntingData) -> Vec<String> {
+pub fn reasons(servo: &Servo, data: &HuntingData) -> Vec<Message> {
     let cause = cause(servo, data);
     let lasts = data.exact.as_ref().and_then(lasting);
     [cause, lasts, first_harmonic(servo, data)]
@@ -90,42 +92,48 @@ pub fn reasons(servo: &Servo, data: &HuntingData) -> Vec<String> {
         .collect()
 }
 
-fn cause(servo: &Servo, data: &HuntingData) -> Option<String> {
+fn cause(servo: &Servo, data: &HuntingData) -> Option<Message> {
     let integral = servo.controller.integral > 0.0;
     match verdict(servo, data) {
         Verdict::Hunts => {
             let stuck = cycle(data).map_or(0.0, |c| c.stuck);
             if stuck > STICKS && integral {
-                return Some(format!(
-                    "The motor sticks for {:.0} % of the time. Meanwhile the integral grows until the motor breaks \
+                return Some(msg!(
+                    "The motor sticks for {} % of the time. Meanwhile the integral grows until the motor breaks \
                      away, and since friction is lower in motion, it overshoots.",
-                    100.0 * stuck
+                    fixed(100.0 * stuck, 0)
                 ));
             }
             (servo.half_gap > 0.0).then(|| {
-                "While the motor crosses the play, what is measured stands still: the controller acts late.".to_owned()
+                "While the motor crosses the play, what is measured stands still: the controller acts late.".into()
             })
         }
         Verdict::StopsShort => Some(
-            "Dry friction holds it there: the controller asks for less than it takes to break away.".to_owned(),
+            "Dry friction holds it there: the controller asks for less than it takes to break away.".into(),
         ),
-        Verdict::Settles if integral => Some("The integral has taken the error away.".to_owned()),
+        Verdict::Settles if integral => Some("The integral has taken the error away.".into()),
         _ => None,
     }
 }
 
 /// Whether the cycle lasts.
-fn lasting(cycle: &HuntingCycle) -> Option<String> {
+fn lasting(cycle: &HuntingCycle) -> Option<Message> {
     let percent = hysteron_core::explore::percent(cycle.multiplier?);
     Some(if cycle.stable? {
-        format!("It goes on for ever: a small disturbance shrinks to {percent} in one period.")
+        msg!(
+            "It goes on for ever: a small disturbance shrinks to {} in one period.",
+            percent
+        )
     } else {
-        format!("The cycle is unstable: a small disturbance grows to {percent} in one period.")
+        msg!(
+            "The cycle is unstable: a small disturbance grows to {} in one period.",
+            percent
+        )
     })
 }
 
 /// What the describing function says beside it.
-fn first_harmonic(servo: &Servo, data: &HuntingData) -> Option<String> {
+fn first_harmonic(servo: &Servo, data: &HuntingData) -> Option<Message> {
     let hunts = match verdict(servo, data) {
         Verdict::RunsAway => return None,
         Verdict::Hunts | Verdict::HuntsWithoutPattern => true,
@@ -134,20 +142,22 @@ fn first_harmonic(servo: &Servo, data: &HuntingData) -> Option<String> {
     Some(match (balance(data), cycle(data)) {
         (None, _) if hunts => {
             "The describing function sees no oscillation: it takes the motion for a sine, which never sticks."
-                .to_owned()
+                .into()
         }
-        (None, _) => "The describing function sees no oscillation either.".to_owned(),
+        (None, _) => "The describing function sees no oscillation either.".into(),
         (Some(found), Some(cycle)) => {
             let [frequency, amplitude] = swing(found.period, found.amplitude);
-            format!(
-                "The describing function predicts {frequency} Hz ({}) and ±{amplitude}° ({}).",
+            msg!(
+                "The describing function predicts {} Hz ({}) and ±{}° ({}).",
+                frequency,
                 difference(cycle.period, found.period),
-                difference(found.amplitude, cycle.amplitude),
+                amplitude,
+                difference(found.amplitude, cycle.amplitude)
             )
         }
         (Some(found), None) => {
             let [frequency, amplitude] = swing(found.period, found.amplitude);
-            format!("The describing function predicts hunting at {frequency} Hz and ±{amplitude}°.")
+            msg!("The describing function predicts hunting at {} Hz and ±{}°.", frequency, amplitude)
         }
     })
 }

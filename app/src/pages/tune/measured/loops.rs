@@ -1,6 +1,7 @@
 //! Steps of set point and load on the preferred model, with a controller and without.
 
 use egui_plot::{Line, LineStyle};
+use hysteron_core::msg;
 use hysteron_core::tuning::Response;
 use hysteron_core::tuning::measured::TunedGains;
 
@@ -18,7 +19,7 @@ pub fn ui(
 ) {
     ui.add_space(6.0);
     let name = format!("{} {}", gains.name, gains.controller.to_uppercase());
-    ui.strong(tr(format!("The preferred model with {name}, simulated")));
+    ui.strong(tr(msg!("The preferred model with {}, simulated", name)));
     // Without a controller the input is set once so that the output ends where the set point is.
     let gain = alone.and_then(|a| a.output.last().copied());
     let settles = gain.filter(|g| g.is_finite() && *g != 0.0);

@@ -8,6 +8,8 @@ mod side;
 mod tables;
 
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::tuning::measured::{
     AmplitudeConvention, MeasuredTuning, Readings, TunedGains, Wishes,
 };
@@ -65,7 +67,7 @@ pub struct Measured {
     asked: Option<Asked>,
     job: Option<Job<MeasuredTask>>,
     shown: Option<Box<MeasuredReport>>,
-    message: Option<String>,
+    message: Option<Message>,
     /// The form for a file that does not say what its columns are.
     form: Option<Form>,
 }
@@ -110,7 +112,7 @@ impl Measured {
                     reading: arrival.reading,
                 }),
                 Err(error) => {
-                    self.message = Some(format!("{}: cannot be read ({error})", arrival.name));
+                    self.message = Some(msg!("{}: cannot be read ({})", arrival.name, error));
                 }
             }
         }
@@ -232,7 +234,7 @@ impl Measured {
     /// The answer and a plot that stay in view in a narrow window.
     pub fn pinned_ui(&self, ui: &mut egui::Ui, height: f32) {
         if let Some(report) = &self.shown {
-            theme::answer_ui(ui, &answer(&report.tuning));
+            theme::answer_ui(ui, answer(&report.tuning));
             match &report.record {
                 Some(record) => plots::record_ui(ui, record, &report.tuning, height),
                 None => plots::nyquist_ui(ui, report, height),
@@ -261,7 +263,7 @@ impl Measured {
             return;
         };
         if !pinned {
-            theme::answer_ui(ui, &answer(&report.tuning));
+            theme::answer_ui(ui, answer(&report.tuning));
         }
         if self.job.is_some() {
             motion::busy_ui(ui);
@@ -310,7 +312,7 @@ impl Measured {
         match self.from {
             From::Record => Hint {
                 sentence: "Is the model all there is to the plant? Drop the file on Compare too."
-                    .to_owned(),
+                    .into(),
                 commands: vec![crate::command::Command::Go("compare")],
             },
             _ => Hint::say(
@@ -346,20 +348,20 @@ impl Measured {
 }
 
 /// What matters most.
-fn answer(tuning: &MeasuredTuning) -> String {
+fn answer(tuning: &MeasuredTuning) -> Message {
     match (&tuning.ultimate, tuning.stall(), &tuning.point) {
-        (_, Some(_), _) => "The test stalled.".to_owned(),
-        (Some(u), _, _) => format!(
+        (_, Some(_), _) => "The test stalled.".into(),
+        (Some(u), _, _) => msg!(
             "The ultimate gain is {}, the ultimate period {}.",
             with_error(u.gain, u.std_error_gain, "1"),
             with_error(u.period, u.std_error_period, "s")
         ),
-        (None, None, Some(point)) => format!(
+        (None, None, Some(point)) => msg!(
             "No ultimate gain follows: the cycle shows the plant at {} degrees.",
             with_uncertainty(point.phase_deg, point.std_error_phase_deg)
                 .unwrap_or_else(|| number(point.phase_deg))
         ),
-        (None, None, None) => "There is no cycle, but there may be a model.".to_owned(),
+        (None, None, None) => "There is no cycle, but there may be a model.".into(),
     }
 }
 

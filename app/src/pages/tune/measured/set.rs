@@ -3,6 +3,8 @@
 use super::{BUILT_IN, Measured, Settings};
 use crate::files::Held;
 use crate::link::not_enclosed;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 impl Measured {
     pub fn set_to(&self) -> Settings {
@@ -15,14 +17,14 @@ impl Measured {
         }
     }
 
-    pub fn take(&mut self, settings: &Settings) -> Result<(), String> {
+    pub fn take(&mut self, settings: &Settings) -> Result<(), Message> {
         settings
             .readings
             .validate()
-            .map_err(|e| format!("These numbers are not possible: {e}."))?;
+            .map_err(|e| msg!("These numbers are not possible: {}.", e))?;
         let positive = |v: Option<f64>| v.is_none_or(|v| v.is_finite() && v > 0.0);
         if !positive(settings.wishes.full_scale) {
-            return Err("The full scale of the input must be above 0.".to_owned());
+            return Err("The full scale of the input must be above 0.".into());
         }
         let present = self.file.as_ref().map(|f| &f.name);
         let file = match &settings.file {

@@ -1,5 +1,6 @@
 //! The panel beside: where the test comes from, and what is wanted of it.
 
+use hysteron_core::msg;
 use hysteron_core::tuning::measured::{AmplitudeConvention, Form};
 
 use super::tables::form_name;
@@ -74,7 +75,7 @@ impl Measured {
                 self.files.entrance.open_dialog(ui.ctx(), TEST);
             }
             let button = ui
-                .button(tr(format!("Open {}", BUILT_IN.id)))
+                .button(tr(msg!("Open {}", BUILT_IN.id)))
                 .on_hover_text(tr("A relay test on a rig: a lag with a dead time."));
             desk.targets.note(format!("test:{}", BUILT_IN.id), ui, &button);
             if button.clicked() {

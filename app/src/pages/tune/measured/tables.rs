@@ -1,5 +1,7 @@
 //! Models and gains as tables.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::tuning::measured::{
     FittedModel, Form, MeasuredTuning, Structure, TunedGains, Value,
 };
@@ -28,18 +30,20 @@ pub fn models_ui(ui: &mut egui::Ui, tuning: &MeasuredTuning) {
             row_ui(ui, model);
         }
     });
-    ui.small(tr("Missed: the share of the output's motion that the model does not explain. A gain known no better than to half its value is left out."));
+    ui.small(tr(
+        "Missed: the share of the output's motion that the model does not explain. A gain known no better than to \
+         half its value is left out."));
 }
 
 /// Relative standard errors from which a gain, and any other value, is not told.
 const VAGUE_GAIN: f64 = 0.5;
 const VAGUE: f64 = 1.0;
 
-fn told(value: &Value, vague: f64) -> String {
+fn told(value: &Value, vague: f64) -> Message {
     if value.std_error < vague * value.value.abs() {
         with_error(value.value, value.std_error, "1")
     } else {
-        "-".to_owned()
+        "-".into()
     }
 }
 
@@ -60,7 +64,7 @@ fn row_ui(ui: &mut egui::Ui, model: &FittedModel) {
     ui.label(tr(model
         .zero
         .as_ref()
-        .map_or_else(|| "-".to_owned(), |z| told(z, VAGUE))));
+        .map_or_else(|| "-".into(), |z| told(z, VAGUE))));
     ui.label(tr(told(&model.dead_time, VAGUE)));
     ui.label(tr_number(format!("{:.2}", 100.0 * model.left)));
     ui.end_row();
@@ -83,7 +87,7 @@ pub fn gains_ui(ui: &mut egui::Ui, tuning: &MeasuredTuning, chosen: &mut Option<
         return;
     };
     ui.add_space(6.0);
-    ui.strong(tr(format!("Gains, {} form", form_name(first.form))));
+    ui.strong(tr(msg!("Gains, {} form", form_name(first.form))));
     let mut heads = vec!["rule", "kp", "ki [1/s]", "kd [s]"];
     if matches!(first.form, Form::Ideal | Form::Series) {
         heads = vec!["rule", "kp", "ti [s]", "td [s]"];

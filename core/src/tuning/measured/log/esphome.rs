@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 use super::lines::{after, time, unwrapped};
 use super::source::{Held, Levels, LogError, Source};
+use crate::message::Message;
+use crate::msg;
 use crate::order::median;
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};
@@ -33,10 +35,10 @@ const DOUBTS: [(&str, &str); 3] = [
 
 pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
     let lines: Vec<&str> = text.lines().collect();
-    let mut notes: Vec<String> = DOUBTS
+    let mut notes: Vec<Message> = DOUBTS
         .iter()
         .filter(|d| lines.iter().any(|l| l.contains(d.0)))
-        .map(|d| d.1.to_owned())
+        .map(|d| d.1.into())
         .collect();
     let told = if relay(&lines).is_some() {
         [Levels::Told; 2]
@@ -56,8 +58,9 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
         }
         None => return Err(LogError::Garbled(Source::Esphome)),
     };
-    notes.push(format!(
-        "The noise band was taken as {NOISEBAND}, ESPHome's default; give --hysteresis where the configuration sets another."
+    notes.push(msg!(
+        "The noise band was taken as {}, ESPHome's default; give --hysteresis where the configuration sets another.",
+        NOISEBAND
     ));
     let settings = Settings {
         form: Form::Esphome,

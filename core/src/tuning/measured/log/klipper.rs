@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::lines::{after, leading};
 use super::source::{Held, Levels, LogError, Source};
+use crate::message::Message;
 use crate::order::median;
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};
@@ -36,7 +37,7 @@ pub(super) fn has_stats(text: &str) -> bool {
 }
 
 pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), LogError> {
-    let settings = |notes: Vec<String>, target: Option<f64>| Settings {
+    let settings = |notes: Vec<Message>, target: Option<f64>| Settings {
         form: Form::Klipper,
         full_scale: Some(1.0),
         target,
@@ -69,7 +70,7 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
     Ok((
         Held::Readings(readings),
         levels,
-        settings(vec![note.to_owned()], None),
+        settings(vec![note.into()], None),
     ))
 }
 

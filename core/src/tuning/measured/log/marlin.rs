@@ -59,7 +59,7 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
         return Ok((
             Held::Readings(readings),
             Levels::Told,
-            settings(vec![note.to_owned()]),
+            settings(vec![note.into()]),
         ));
     }
     let failed = lines.iter().find_map(|l| {

@@ -15,6 +15,7 @@ use super::number::number;
 use super::readings::tune_readings;
 use super::report::{MeasuredTuning, Settings, tune_record};
 use super::wishes::Wishes;
+use crate::msg;
 
 pub use source::{Held, Levels, LogError, Source};
 
@@ -118,9 +119,11 @@ impl Log {
         };
         if let (Held::Readings(readings), true) = (&self.held, self.levels != Levels::Told) {
             let [low, high] = readings.levels.map(number);
-            settings.notes.push(format!(
-                "The log does not say the levels of the input: {low} and {high} were assumed, and every gain is in \
-                 proportion to them; give --levels where they are others."
+            settings.notes.push(msg!(
+                "The log does not say the levels of the input: {} and {} were assumed, and every gain is in \
+                 proportion to them; give --levels where they are others.",
+                low,
+                high
             ));
         }
         let found = match &self.held {

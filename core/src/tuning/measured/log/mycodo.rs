@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::lines::{after, time, unwrapped};
 use super::source::{Held, Levels, LogError, Source};
+use crate::msg;
 use crate::order::median;
 use crate::tuning::measured::gains::Form;
 use crate::tuning::measured::readings::{AmplitudeConvention, Readings};
@@ -29,24 +30,23 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
     {
         return Err(LogError::Failed(
             line.trim().chars().take(120).collect(),
-            "the amplitude did not settle within 20 peaks: less noise, a larger output step, or a longer look-back lets it",
+            "the amplitude did not settle within 20 peaks: less noise, a larger output step, or a longer look-back \
+             lets it",
         ));
     }
     let mut notes = vec![
         "The tuner takes its output step for half the relay's swing; where the output cannot go below 0 it switches \
          between 0 and the step, and its ultimate gain comes out twice as large as it should be."
-            .to_owned(),
+            .into(),
         "Its rules divide by twentieths (34, 40, 160 for 1.7, 2, 8): Kp comes out 20 times and Kd 400 times too small."
-            .to_owned(),
+            .into(),
     ];
     let (readings, levels) = if let Some(found) = found(text) {
         found
     } else {
-        notes.push(format!(
-            "The amplitude was computed from the gains in the log, and the noise band taken as {NOISEBAND}, the \
+        notes.push(msg!("The amplitude was computed from the gains in the log, and the noise band taken as {}, the \
              tuner's default; give --hysteresis where another was set. At log level DEBUG the log has the peaks and \
-             the times."
-        ));
+             the times.", NOISEBAND));
         of_gains(text).ok_or(LogError::Garbled(Source::Mycodo))?
     };
     let settings = Settings {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::{Message, says};
+use crate::msg;
 use crate::tuning::measured::readings::Readings;
 use crate::tuning::measured::record::{Record, RecordError};
 
@@ -42,7 +44,8 @@ impl Source {
             }
             Self::Esphome => "the lines 'kp: ...' and 'ki: ...', or those of the oscillation",
             Self::Mycodo => {
-                "the lines 'found peak: ...' and 'switched state: ...' with their times, or the gains of the rule ziegler-nichols"
+                "the lines 'found peak: ...' and 'switched state: ...' with their times, or the gains of the rule \
+                 ziegler-nichols"
             }
         }
     }
@@ -52,19 +55,14 @@ impl Source {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LogError {
     /// Recognised, but what is needed is not whole.
-    #[error("this looks like a log of {name}, but no cycle can be read from it: expected {needs}", name = .0.name(), needs = .0.needs())]
     Garbled(Source),
     /// The tuner had not come to its end.
-    #[error("the log ends before the result: {0}")]
     Unfinished(&'static str),
     /// Levels were given where the log has them, or there is none.
-    #[error("levels are for numbers, and for a log that does not say them: leave --levels out")]
     Levels,
     /// The tuner gave up.
-    #[error("the tuner gave up: '{0}'; {1}")]
     Failed(String, &'static str),
     /// It was read, but its numbers are impossible.
-    #[error("this looks like a log of {name}, but it cannot be used: {error}", name = .log.name(), error = .error)]
     Impossible {
         /// Whose log it is.
         log: Source,
@@ -72,9 +70,41 @@ pub enum LogError {
         error: RecordError,
     },
     /// The same of a record.
-    #[error("{0}")]
     Numbers(#[from] RecordError),
 }
+
+impl LogError {
+    /// In words.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Garbled(given) => msg!(
+                "this looks like a log of {}, but no cycle can be read from it: expected {}",
+                given.name(),
+                given.needs()
+            ),
+            Self::Unfinished(given) => msg!("the log ends before the result: {}", given),
+            Self::Levels => {
+                "levels are for numbers, and for a log that does not say them: leave --levels out"
+                    .into()
+            }
+            Self::Failed(first, second) => {
+                msg!(
+                    "the tuner gave up: '{}'; {}",
+                    Message::name(first.clone()),
+                    second
+                )
+            }
+            Self::Impossible { log, error } => msg!(
+                "this looks like a log of {}, but it cannot be used: {}",
+                log.name(),
+                error
+            ),
+            Self::Numbers(error) => msg!("{}", error),
+        }
+    }
+}
+
+says!(LogError);
 
 /// Where the levels of the input come from, and what else follows from them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
