@@ -433,7 +433,7 @@ fn hint_ui(ui: &mut egui::Ui, hint: Hint, desk: &mut Desk) {
     });
 }
 
-fn drop_hint_ui(ctx: &egui::Context, sentence: &str) {
+fn drop_hint_ui(ctx: &egui::Context, sentence: &'static str) {
     if ctx.input(|i| !i.raw.hovered_files.is_empty()) {
         egui::Area::new(egui::Id::unique("drop"))
             .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)

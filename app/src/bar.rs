@@ -183,13 +183,13 @@ fn heading(ui: &Ui) -> f32 {
 const SEPARATOR: f32 = 6.0;
 
 /// Width of buttons with their gaps, points.
-fn buttons<'a>(ui: &Ui, names: impl IntoIterator<Item = &'a str>) -> f32 {
+fn buttons(ui: &Ui, names: impl IntoIterator<Item = &'static str>) -> f32 {
     names
         .into_iter()
         .map(|name| theme::button_width(ui, name))
         .sum()
 }
 
-fn width(ui: &Ui, name: &str, font: egui::FontId) -> f32 {
+fn width(ui: &Ui, name: &'static str, font: egui::FontId) -> f32 {
     theme::text_width(ui, tr(name), font)
 }

@@ -5,6 +5,8 @@ use egui::{Event, Key, KeyboardShortcut, Modifiers};
 use crate::command::Command;
 use crate::language::tr;
 use crate::widgets::chart_cursor;
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 /// A key and what it asks for.
 struct Shortcut {
@@ -111,6 +113,22 @@ pub fn pressed(ctx: &egui::Context, pages: &[&'static str], commands: &mut Vec<C
     });
 }
 
+/// Keys as they are named.
+fn names(keys: &str) -> Message {
+    let rest = |with: &str| keys.strip_prefix(with).map(Message::name);
+    if let Some(key) = rest("Ctrl+Shift+") {
+        msg!("Ctrl+Shift+{}", key)
+    } else if let Some(key) = rest("Ctrl+") {
+        msg!("Ctrl+{}", key)
+    } else if let Some(key) = rest("Shift+Cmd+") {
+        msg!("Shift+Cmd+{}", key)
+    } else if let Some(key) = rest("Cmd+") {
+        msg!("Cmd+{}", key)
+    } else {
+        Message::words(keys.to_owned())
+    }
+}
+
 /// Takes a key where it is pressed with just these modifiers: a digit with Shift is another sign. Where a keyboard
 /// needs Shift for the question mark, it must not count.
 fn consume(input: &mut egui::InputState, wanted: KeyboardShortcut) -> bool {
@@ -156,7 +174,7 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                         ui.end_row();
                     }
                     for shortcut in &SHORTCUTS {
-                        let names: Vec<String> = shortcut
+                        let named: Vec<String> = shortcut
                             .keys
                             .iter()
                             .map(|k| match k.logical_key {
@@ -164,8 +182,8 @@ pub fn sheet_ui(ctx: &egui::Context, titles: &[&'static str]) -> bool {
                                 _ => ctx.format_shortcut(k),
                             })
                             .collect();
-                        let names: Vec<String> = names.iter().map(tr).collect();
-                        ui.strong(names.join(&format!("  {}  ", tr("or"))));
+                        let said: Vec<String> = named.iter().map(|keys| tr(names(keys))).collect();
+                        ui.strong(said.join(&format!("  {}  ", tr("or"))));
                         ui.label(tr(shortcut.sentence));
                         ui.end_row();
                     }

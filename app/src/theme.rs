@@ -279,7 +279,7 @@ pub fn readable(ui: &egui::Ui, color: Color32) -> Color32 {
 }
 
 /// Width of a button with its gap, points.
-pub fn button_width(ui: &egui::Ui, name: &str) -> f32 {
+pub fn button_width(ui: &egui::Ui, name: &'static str) -> f32 {
     button_width_of(ui, &tr(name))
 }
 

@@ -7,6 +7,8 @@
 //! The plot, then the ends of x and of y; an axis that shows all by itself has none. On a logarithmic axis the ends
 //! are logarithms to base 10.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use std::collections::BTreeMap;
 
 use serde_json::Value;
@@ -118,7 +120,7 @@ impl Zooms {
     ///
     /// # Errors
     /// One sentence.
-    pub fn read(value: &Value) -> Result<Self, String> {
+    pub fn read(value: &Value) -> Result<Self, Message> {
         let text = value.as_str().ok_or_else(|| refused(&value.to_string()))?;
         let mut zooms = Self::default();
         for entry in text.split('/').filter(|_| !text.is_empty()) {
@@ -126,7 +128,7 @@ impl Zooms {
             let read = read.and_then(|(name, ends)| Some((name, Zoom::read(ends)?)));
             let (name, zoom) = read.ok_or_else(|| refused(entry))?;
             if zooms.0.len() >= MOST {
-                return Err(format!("This link zooms in on more than {MOST} plots."));
+                return Err(msg!("This link zooms in on more than {} plots.", MOST));
             }
             if zooms.0.insert(name.to_owned(), zoom).is_some() {
                 return Err(refused(entry));
@@ -136,9 +138,12 @@ impl Zooms {
     }
 }
 
-fn refused(entry: &str) -> String {
+fn refused(entry: &str) -> Message {
     let entry = link::shortened(entry);
-    format!("This link zooms in on an impossible range: {entry}.")
+    msg!(
+        "This link zooms in on an impossible range: {}.",
+        Message::name(entry)
+    )
 }
 
 /// The name of a plot as it stands in a link.
@@ -233,7 +238,10 @@ mod tests {
         ] {
             let read = Zooms::read(&json!(text));
             let sentence = read.expect_err(text);
-            assert!(sentence.contains("impossible"), "{text}: {sentence}");
+            assert!(
+                sentence.to_string().contains("impossible"),
+                "{text}: {sentence}"
+            );
         }
         for value in [
             json!(null),
@@ -245,7 +253,7 @@ mod tests {
         }
         let many: Vec<String> = (0..=MOST).map(|i| format!("p{i}:0,1")).collect();
         let many = Zooms::read(&json!(many.join("/")));
-        assert!(many.is_err_and(|e| e.contains("more than")));
+        assert!(many.is_err_and(|e| e.to_string().contains("more than")));
     }
 
     #[test]

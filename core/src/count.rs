@@ -1,34 +1,21 @@
 //! How many there are, as it is read: `1 switch`, `3 switches`.
 
-use crate::message::Message;
-
-/// A count with its noun, which is given for one.
-pub fn counted(count: usize, noun: &str) -> Message {
-    let hisses = ["s", "x", "ch", "sh"].iter().any(|end| noun.ends_with(end));
-    let words = match count {
-        1 => return Message::words(format!("1 {noun}")),
-        _ if hisses => format!("{{}} {noun}es"),
-        _ => format!("{{}} {noun}s"),
+/// A count with its noun: the words for one, and those for many with the number in their `{}`.
+#[macro_export]
+macro_rules! counted {
+    ($count:expr, $one:literal, $many:literal) => {
+        match $count {
+            1 => $crate::message::Message::from($one),
+            many => $crate::msg!($many, many),
+        }
     };
-    Message::Words(words.into(), vec![count.into()])
 }
 
 #[cfg(test)]
 mod tests {
-    use super::counted;
-
     #[test]
     fn one_stands_alone() {
-        let all = [0, 1, 2].map(|n| {
-            [counted(n, "switch"), counted(n, "time")]
-                .map(|c| c.to_string())
-                .join(", ")
-        });
-        let wanted = [
-            "0 switches, 0 times",
-            "1 switch, 1 time",
-            "2 switches, 2 times",
-        ];
-        assert_eq!(all, wanted);
+        let all = [0_usize, 1, 2].map(|n| counted!(n, "1 switch", "{} switches").to_string());
+        assert_eq!(all, ["0 switches", "1 switch", "2 switches"]);
     }
 }

@@ -1,5 +1,6 @@
 //! Everything about one relay loop, for drawing: prediction beside simulation.
 
+use crate::uncertain::brief;
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -68,8 +69,8 @@ impl ExploreError {
             Self::Simulate(error) => error.message(),
             Self::Lag { lag, most } => msg!(
                 "its dead time and delay are {} s, where its fastest pole allows {} s at most",
-                format!("{:.2e}", lag),
-                format!("{:.2e}", most)
+                brief(*lag),
+                brief(*most)
             ),
             Self::NoiseSize => "its noise must be 0 or more".into(),
             Self::NoiseInterval => "its noise must change every 0.001 to 1000 s".into(),
@@ -299,6 +300,37 @@ fn switch_rate(run: &Trajectory, from: f64) -> Option<f64> {
     rate.is_finite().then_some(rate)
 }
 
+/// What becomes of a small disturbance, of which so much is left after a period.
+fn disturbed(stable: Option<bool>, left: f64) -> Message {
+    let share = percent(left);
+    match (stable, left < 1.0) {
+        (Some(true), true) => msg!(
+            "Stable: a small disturbance shrinks to {} in one period.",
+            share
+        ),
+        (Some(true), false) => msg!(
+            "Stable: a small disturbance grows to {} in one period.",
+            share
+        ),
+        (Some(false), true) => msg!(
+            "Unstable: a small disturbance shrinks to {} in one period.",
+            share
+        ),
+        (Some(false), false) => msg!(
+            "Unstable: a small disturbance grows to {} in one period.",
+            share
+        ),
+        (None, true) => msg!(
+            "Its stability is not known: a small disturbance shrinks to {} in one period.",
+            share
+        ),
+        (None, false) => msg!(
+            "Its stability is not known: a small disturbance grows to {} in one period.",
+            share
+        ),
+    }
+}
+
 fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> Message {
     let Some(cycle) = exact else {
         let rests = prediction.existence.filter(|e| !e.holds);
@@ -315,16 +347,7 @@ fn stability(exact: Option<&ExactCycle>, prediction: &Prediction) -> Message {
     };
     let stable = cycle.cycle.stable;
     let verdict = match (stable, cycle.multiplier) {
-        (_, Some(m)) => {
-            let verdict = match stable {
-                Some(true) => "Stable",
-                Some(false) => "Unstable",
-                None => "Its stability is not known",
-            };
-            let way = if m < 1.0 { "shrinks" } else { "grows" };
-            let words = format!("{verdict}: a small disturbance {way} to {{}} in one period.");
-            Message::Words(words.into(), vec![percent(m)])
-        }
+        (_, Some(m)) => disturbed(stable, m),
         (Some(true), None) => "Stable.".into(),
         (Some(false), None) => "Unstable.".into(),
         (None, None) => "Its stability is not known.".into(),

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hysteron_core::message::Message;
-use hysteron_work::language::say;
+use hysteron_work::language::{say, tr_number};
 
 /// Cycles by name, with period, amplitude and whether they are stable.
 #[derive(Default)]
@@ -13,9 +13,9 @@ pub struct CycleTable {
 
 impl CycleTable {
     /// Adds a cycle; `stable` is `None` where that is not known.
-    pub fn row(&mut self, name: &str, period: f64, amplitude: f64, stable: Option<bool>) {
+    pub fn row(&mut self, name: &'static str, period: f64, amplitude: f64, stable: Option<bool>) {
         let stable = stable.map_or("not known", |s| if s { "yes" } else { "no" });
-        let [period, amplitude] = [period, amplitude].map(|v| say(format!("{v:.9}")));
+        let [period, amplitude] = [period, amplitude].map(|v| tr_number(format!("{v:.9}")));
         let (name, stable) = (say(name), say(stable));
         let _ = writeln!(
             self.rows,
@@ -24,7 +24,7 @@ impl CycleTable {
     }
 
     /// Adds a line of words on cycles of this name.
-    pub fn words(&mut self, name: &str, words: &Message) {
+    pub fn words(&mut self, name: &'static str, words: &Message) {
         let _ = writeln!(self.rows, "{:<22} {}", say(name), say(words));
     }
 

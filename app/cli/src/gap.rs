@@ -7,7 +7,7 @@ use hysteron_core::backlash::{BacklashMap, GapEstimate, MapSilence, backlash_map
 use hysteron_core::measurement::{ImportOptions, Mapping, Period, Quantity, TorqueConstant};
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
-use hysteron_work::language::say;
+use hysteron_work::language::{say, tr_number};
 use serde_json::json;
 
 use crate::output::Format;
@@ -119,7 +119,7 @@ fn text(
                 scaled(t.gap),
                 scaled(t.std_error)
             );
-            let _ = writeln!(out, "{}", say(&row));
+            let _ = writeln!(out, "{}", tr_number(row));
         }
         if estimate.traverses.len() > LISTED {
             let more = msg!("... {} more", estimate.traverses.len() - LISTED);

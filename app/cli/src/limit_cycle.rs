@@ -195,12 +195,12 @@ fn text(report: &Report) -> String {
     out
 }
 
-fn row(table: &mut CycleTable, name: &str, cycle: &Cycle) {
+fn row(table: &mut CycleTable, name: &'static str, cycle: &Cycle) {
     table.row(name, cycle.period, cycle.amplitude, cycle.stable);
 }
 
 /// All cycles of a kind, but for a long family of unstable ones, of which the longest and the shortest stand for all.
-fn rows(table: &mut CycleTable, name: &str, cycles: &[Cycle]) {
+fn rows(table: &mut CycleTable, name: &'static str, cycles: &[Cycle]) {
     let mut sorted: Vec<&Cycle> = cycles.iter().collect();
     sorted.sort_by(|a, b| b.period.total_cmp(&a.period));
     let (family, single): (Vec<&Cycle>, Vec<&Cycle>) =

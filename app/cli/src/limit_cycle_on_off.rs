@@ -119,10 +119,7 @@ impl OnOffReport {
             .or(self.settled.simulated.as_ref());
         if let Some(cycle) = shown {
             let parts = cycle.positions.iter();
-            let parts = parts.map(|(position, time)| {
-                let words = format!("{} {{}}", position.name());
-                Message::Words(words.into(), vec![format!("{time:.6} s").into()])
-            });
+            let parts = parts.map(|(position, time)| position.lasting(format!("{time:.6} s")));
             let parts = msg!("In each period: {}.", Message::list(", ", parts));
             let _ = writeln!(out, "{}", say(&parts));
         }

@@ -13,7 +13,7 @@ use hysteron_core::progress::Progress;
 use hysteron_core::report::{self, Provenance, ReportInput, Tongue};
 use hysteron_core::user_model::UserModel;
 use hysteron_work::cores;
-use hysteron_work::language::{Language, say, spoken};
+use hysteron_work::language::{Language, say, spoken, tr_number};
 
 use crate::arguments::{Arguments, Kind};
 use crate::read::read;
@@ -102,7 +102,7 @@ impl Report {
         } else {
             String::new()
         };
-        let seconds = say(format!("({:.1} s)", self.diagnosis.seconds));
+        let seconds = tr_number(format!("({:.1} s)", self.diagnosis.seconds));
         format!("{found}{rest} {seconds}")
     }
 }

@@ -11,7 +11,7 @@ use hysteron_core::measurement::{ImportOptions, Mapping, Period, TorqueConstant}
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
 use hysteron_core::uncertain::with_error;
-use hysteron_work::language::say;
+use hysteron_work::language::{say, tr_number};
 
 use crate::arguments::Kind;
 use crate::output::Format;
@@ -98,7 +98,11 @@ fn text(name: &str, screening: &Screening, notes: &[Message]) -> String {
     for note in notes {
         let _ = writeln!(out, "{}: {}", say("Note"), say(note));
     }
-    let _ = writeln!(out, "{}", say(format!("({:.2} s)", screening.seconds)));
+    let _ = writeln!(
+        out,
+        "{}",
+        tr_number(format!("({:.2} s)", screening.seconds))
+    );
     out
 }
 
@@ -126,5 +130,8 @@ fn line(parameter: &Parameter) -> String {
         ..
     } = parameter;
     let value = say(with_error(*value, *std_error, unit));
-    format!("{name:<8} {value:<32} {}", say(label))
+    format!(
+        "{name:<8} {value:<32} {}",
+        say(Message::words(label.clone()))
+    )
 }

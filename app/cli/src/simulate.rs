@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use hysteron_core::count::counted;
+use hysteron_core::counted;
 use hysteron_core::drive::{self, DriveInput, DriveRun, Summary, summarize};
 use hysteron_core::hunting::{self, HuntingError, HuntingRun};
 use hysteron_core::message::{Message, fixed};
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Message> {
         })?;
         text.push(msg!(
             "{} written to {}.",
-            counted(samples, "sample"),
+            counted!(samples, "1 sample", "{} samples"),
             Message::name(path.display().to_string())
         ));
     }
@@ -124,7 +124,7 @@ pub fn read(path: &Path) -> Result<AnyScenario, Message> {
 
 /// How many switches there were, and why no more.
 fn switched(switches: usize, end: f64, cut: Option<Cut>) -> Vec<Message> {
-    let switches = counted(switches, "switch");
+    let switches = counted!(switches, "1 switch", "{} switches");
     let mut text = vec![msg!("{} up to {} s.", switches, fixed(end, 6))];
     let why = cut.map(|cut| match cut {
         Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
@@ -145,7 +145,7 @@ fn summary(run: &Trajectory) -> Vec<Message> {
         let total: f64 = run.sliding.iter().map(|s| s[1] - s[0]).sum();
         text.push(msg!(
             "The output slides along the threshold {}, {} s in all.",
-            counted(run.sliding.len(), "time"),
+            counted!(run.sliding.len(), "1 time", "{} times"),
             fixed(total, 6)
         ));
     }
@@ -200,8 +200,8 @@ fn drive_summary(input: &DriveInput, run: &DriveRun) -> Vec<Message> {
     let end = run.time.last().copied().unwrap_or(0.0);
     let mut text = vec![msg!(
         "{} and {} up to {} s.",
-        counted(run.switches(), "switch"),
-        counted(run.impacts(), "impact"),
+        counted!(run.switches(), "1 switch", "{} switches"),
+        counted!(run.impacts(), "1 impact", "{} impacts"),
         fixed(end, 6)
     )];
     if let Some(time) = run.chattering {
@@ -224,7 +224,7 @@ fn drive_summary(input: &DriveInput, run: &DriveRun) -> Vec<Message> {
         let mean = found.traverses.iter().map(|t| t.travel).sum::<f64>() / count as f64;
         text.push(msg!(
             "It crosses the gap {}, {} rad (or m) from contact to contact; the gap is {}.",
-            counted(count, "time"),
+            counted!(count, "1 time", "{} times"),
             fixed(mean, 6),
             fixed(2.0 * input.drive.half_gap, 6)
         ));
@@ -248,7 +248,7 @@ fn servo_summary(run: &HuntingRun, settled: &Message, noise: Option<Noise>) -> V
     let stuck = run.stuck.iter().fold(0.0, |sum, s| sum + (s[1] - s[0]));
     let mut text = vec![msg!(
         "The motor sticks {} up to {} s, {} s in all.",
-        counted(run.stuck.len(), "time"),
+        counted!(run.stuck.len(), "1 time", "{} times"),
         fixed(end, 6),
         fixed(stuck, 6)
     )];

@@ -10,7 +10,7 @@ use hysteron_core::measurement::Kind;
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
 use hysteron_core::uncertain::{brief, with_error};
-use hysteron_work::language::say;
+use hysteron_work::language::{say, tr_number};
 
 const WIDTH: usize = 80;
 
@@ -93,7 +93,7 @@ pub fn formulas(discovery: &Discovery) -> String {
         .filter(|f| f.on_front || f.in_class);
     for formula in listed {
         let mark = if formula.in_class { '*' } else { ' ' };
-        let (length, error) = (formula.length, say(brief(formula.error)));
+        let (length, error) = (formula.length, tr_number(brief(formula.error)));
         let _ = writeln!(out, "{mark} {length:6}  {error:>6}  {}", formula.formula);
     }
     if let Some(found) = discovery.found() {
@@ -189,7 +189,10 @@ fn names(ids: &[EffectId]) -> String {
 }
 
 fn parameters(out: &mut String, list: &[&Parameter]) {
-    let labels: Vec<String> = list.iter().map(|p| say(&p.label)).collect();
+    let labels: Vec<String> = list
+        .iter()
+        .map(|p| say(Message::words(p.label.clone())))
+        .collect();
     let name = widest(list.iter().map(|p| p.name.as_str()));
     let width = widest(labels.iter().map(String::as_str));
     for (p, label) in list.iter().zip(&labels) {
@@ -217,8 +220,8 @@ fn candidates(out: &mut String, list: &[Candidate]) {
     for (name, candidate) in rows {
         let head = format!(
             "  {name:<width$}  {:>9}  {:>10}  ",
-            say(brief(candidate.error)),
-            say(format!("{:.1}", candidate.delta_bic))
+            tr_number(brief(candidate.error)),
+            tr_number(format!("{:.1}", candidate.delta_bic))
         );
         let note = if candidate.equivalent_to.is_empty() {
             say(candidate.standing())
@@ -282,7 +285,7 @@ fn chart(out: &mut String, diagnosis: &Diagnosis) {
         } else {
             error / most
         };
-        let value = say(brief(*error));
+        let value = tr_number(brief(*error));
         line(
             out,
             &format!("  {label:<width$}  {value:>8}  {}", bar(share)),

@@ -12,7 +12,7 @@ use hysteron_core::tuning::measured::{
     Wishes, open, tune_readings,
 };
 use hysteron_core::uncertain::digits;
-use hysteron_work::language::say;
+use hysteron_work::language::{say, tr_number};
 use serde_json::json;
 
 use crate::arguments::Kind;
@@ -341,7 +341,7 @@ fn model_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
             lag(0),
             lag(1),
             short(m.dead_time.value),
-            say(format!("{:.2} %", 100.0 * m.left)),
+            tr_number(format!("{:.2} %", 100.0 * m.left)),
         ]
     };
     let models = result.models.iter().map(row);
@@ -366,7 +366,11 @@ fn gain_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
     let head = std::iter::once(title).chain(words.map(Message::from));
     let none = || "-".to_owned();
     let row = |g: &TunedGains| {
-        let name = format!("{} {}", say(&g.name), g.controller.to_uppercase());
+        let name = format!(
+            "{} {}",
+            say(Message::words(g.name.clone())),
+            g.controller.to_uppercase()
+        );
         let [integral, derivative] = if of_times {
             [g.ti.map_or_else(none, short), short(g.td)]
         } else {
@@ -375,7 +379,10 @@ fn gain_rows(result: &MeasuredTuning) -> Vec<Vec<String>> {
         let mut row = vec![name, short(g.kp), integral, derivative];
         if g.stable || result.models.is_empty() {
             row.push(g.phase_margin_deg.map_or_else(none, |p| format!("{p:.0}°")));
-            row.push(g.gain_margin.map_or_else(none, |m| say(format!("{m:.2}"))));
+            row.push(
+                g.gain_margin
+                    .map_or_else(none, |m| tr_number(format!("{m:.2}"))),
+            );
         } else {
             row.push(say("unstable on the model"));
         }
@@ -414,5 +421,5 @@ fn aligned(rows: &[Vec<String>]) -> String {
 
 /// Five significant digits.
 fn short(value: f64) -> String {
-    say(digits(value, 5))
+    tr_number(digits(value, 5))
 }

@@ -1,5 +1,7 @@
 //! The program on a native machine: a window without a subcommand, else the command line.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -40,9 +42,12 @@ fn window(file: Option<PathBuf>) -> ExitCode {
     match file {
         // A command that is misspelled is no file either.
         Some(file) if !file.exists() => {
-            let name = file.display();
-            let line = format!("{name}: there is no such file or command; see hysteron --help");
-            hysteron_cli::fail(&line, 2)
+            let name = Message::name(file.display().to_string());
+            let line = msg!(
+                "{}: there is no such file or command; see hysteron --help",
+                name
+            );
+            hysteron_cli::fail(line, 2)
         }
         file => match run_native(file.clone()) {
             Ok(()) => ExitCode::SUCCESS,

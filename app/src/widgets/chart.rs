@@ -9,7 +9,8 @@ use egui_plot::{
 };
 
 use super::chart_axes::{
-    LABELS, beside, grid, grid_x, label, plain, power_label, powers, scale, shown_from, title,
+    LABELS, beside, grid, grid_x, label, named, plain, power_label, powers, scale, shown_from,
+    title,
 };
 pub use super::chart_axes::{round_step, span_decades};
 pub use super::chart_caption::{Key, Shape, caption_ui};
@@ -41,8 +42,8 @@ pub struct Chart<'a> {
     salt: IdSalt,
     /// What its zoom is called in links, and which of its axes have one.
     zoom: (String, [bool; 2]),
-    /// Names of the axes with their units, in English.
-    axes: [String; 2],
+    /// Names of the axes with their units.
+    axes: [Message; 2],
     /// The x, and the y, of what is drawn are logarithms to base 10.
     decades: [bool; 2],
     /// It can be dragged only while it is zoomed: else a finger on it moves the page.
@@ -63,13 +64,13 @@ impl<'a> Chart<'a> {
     /// No other of its page has its name.
     pub fn new(
         name: impl Into<String>,
-        [x, y]: [impl Into<String>; 2],
+        [x, y]: [impl Into<Message>; 2],
         height: f32,
         width: f32,
     ) -> Self {
         let name = name.into();
         let salt = IdSalt::new(&name);
-        let axes = [x.into(), y.into()];
+        let axes = [named(x.into()), named(y.into())];
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
@@ -192,7 +193,7 @@ impl<'a> Chart<'a> {
         }
         let start = ui.cursor().min;
         let table = chart_menu::wants_numbers(&ctx, id).then(|| Table::new("plot"));
-        let titles = axes.clone();
+        let titles = axes.each_ref().map(Message::to_string);
         let worked = Worked {
             plot: id,
             group: self.linked,
@@ -265,7 +266,7 @@ fn read_ui<R>(
     ui: &egui::Ui,
     shown: &PlotResponse<R>,
     (id, group): (Id, Option<Id>),
-    axes: &[String; 2],
+    axes: &[Message; 2],
     read: &Reader<'_>,
     bare: bool,
 ) {
@@ -287,12 +288,8 @@ fn read_ui<R>(
 }
 
 /// A plot in words: its axes, and what the keys read in it.
-fn words(axes: &[String; 2], text: Option<&str>) -> WidgetInfo {
-    let name = tr(msg!(
-        "Plot: {} over {}",
-        Message::words(axes[1].clone()),
-        Message::words(axes[0].clone())
-    ));
+fn words(axes: &[Message; 2], text: Option<&str>) -> WidgetInfo {
+    let name = tr(msg!("Plot: {} over {}", &axes[1], &axes[0]));
     WidgetInfo {
         current_text_value: text.map(|t| t.replace('\n', "; ")),
         ..WidgetInfo::labeled(egui::Role::Image, true, name)
@@ -300,7 +297,7 @@ fn words(axes: &[String; 2], text: Option<&str>) -> WidgetInfo {
 }
 
 /// The units in which the axes of a plot are read, by what it showed last.
-fn scales_of(ctx: &egui::Context, id: Id, axes: &[String; 2], decades: [bool; 2]) -> [Scale; 2] {
+fn scales_of(ctx: &egui::Context, id: Id, axes: &[Message; 2], decades: [bool; 2]) -> [Scale; 2] {
     let memory = PlotMemory::load(ctx, id);
     [0, 1].map(|i| {
         let size = memory.as_ref().map_or(0.0, |memory| {

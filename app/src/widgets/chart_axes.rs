@@ -3,6 +3,7 @@
 use egui_plot::{GridInput, GridMark};
 use hysteron_core::curve::extremes;
 use hysteron_core::message::Message;
+use hysteron_core::msg;
 use hysteron_core::uncertain::{Scale, power_of_ten, titled};
 
 use crate::language::tr_number;
@@ -31,8 +32,8 @@ pub(super) fn shown_from(points: f32) -> egui::Rangef {
 }
 
 /// The unit in which an axis is read that shows values up to this size.
-pub(super) fn scale(axis: &str, size: f64) -> Scale {
-    let unit = unit_of(axis);
+pub(super) fn scale(axis: &Message, size: f64) -> Scale {
+    let unit = parts(axis).map_or("", |(_, unit)| unit);
     let scale = Scale::of(size, unit);
     if scale.factor != 1.0 || !(f64::MIN_POSITIVE..LEAST_PLAIN).contains(&size) {
         return scale;
@@ -47,12 +48,32 @@ pub(super) fn scale(axis: &str, size: f64) -> Scale {
 }
 
 /// The name of an axis with the unit in which it is read.
-pub(super) fn title(axis: &str, scale: &Scale) -> Message {
-    match axis.rsplit_once(" [") {
-        Some((name, _)) if axis.ends_with(']') => {
-            titled(Message::words(name.to_owned()), &scale.unit)
-        }
-        _ => titled(Message::words(axis.to_owned()), &scale.unit),
+pub(super) fn title(axis: &Message, scale: &Scale) -> Message {
+    let name = parts(axis).map_or(axis, |(name, _)| name);
+    titled(name, &scale.unit)
+}
+
+/// What an axis is called, with its unit apart: it is read in one that suits its values.
+pub(super) fn named(axis: Message) -> Message {
+    let apart = |text: &str| {
+        let (name, unit) = text.strip_suffix(']')?.rsplit_once(" [")?;
+        let name = Message::words(name.to_owned());
+        Some(msg!("{} [{}]", name, unit.to_owned()))
+    };
+    match &axis {
+        Message::Words(text, values) if values.is_empty() => apart(text).unwrap_or(axis),
+        _ => axis,
+    }
+}
+
+/// The name of an axis and its unit, if it has one.
+fn parts(axis: &Message) -> Option<(&Message, &str)> {
+    match axis {
+        Message::Words(words, values) if words == "{} [{}]" => match values.as_slice() {
+            [name, Message::Number(unit)] => Some((name, unit)),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
@@ -73,12 +94,6 @@ pub(super) fn label(mark: GridMark, factor: f64) -> String {
         return "0".to_owned();
     }
     tr_number(format!("{value:.decimals$}"))
-}
-
-/// The unit in the name of an axis, if it has one.
-fn unit_of(axis: &str) -> &str {
-    let inner = axis.strip_suffix(']').and_then(|a| a.rsplit_once('['));
-    inner.map_or("", |(_, unit)| unit)
 }
 
 /// The name of y beside a chart of this height, on more lines where one would lie over what is above and below; its
@@ -241,11 +256,12 @@ mod tests {
     }
 
     fn labels(axis: &str, size: f64, marks: &[(f64, f64)]) -> (String, Vec<String>) {
-        let scale = scale(axis, size);
+        let axis = named(Message::words(axis.to_owned()));
+        let scale = scale(&axis, size);
         let mark = |&(value, step_size)| GridMark { value, step_size };
         let marks = marks.iter().map(mark);
         let labels = marks.map(|mark| label(mark, scale.factor));
-        (title(axis, &scale).to_string(), labels.collect())
+        (title(&axis, &scale).to_string(), labels.collect())
     }
 
     #[test]

@@ -82,20 +82,21 @@ pub fn wished(ctx: &Context, plot: Id) -> bool {
 pub fn ui(
     ui: &mut egui::Ui,
     plot: Id,
-    axes: &[String; 2],
+    axes: &[Message; 2],
     start: Pos2,
     inner: Rect,
     (table, asked): (Option<Table>, bool),
 ) {
     let ctx = ui.ctx().clone();
     with(&ctx, |plots| {
-        plots.axes.push(axes.clone());
+        let english = axes.each_ref().map(Message::to_string);
+        plots.axes.push(english.clone());
         if let Some((_, form)) = plots.wish.take_if(|(wished, _)| *wished == plot) {
             // Labels of the last ticks reach a little beyond the frame; those of x stand below it.
             let end = inner.max + vec2(10.0, 44.0);
             plots.given = Some(Given {
                 form,
-                axes: axes.clone(),
+                axes: english,
                 place: Rect::from_min_max(start, end),
                 table,
             });
@@ -106,11 +107,7 @@ pub fn ui(
     let mut child = ui.new_child(UiBuilder::new().id_salt(plot).max_rect(corner));
     child.spacing_mut().button_padding = vec2(2.0, 0.0);
     child.spacing_mut().item_spacing = vec2(0.0, 0.0);
-    let name = tr(msg!(
-        "Menu of the plot: {} over {}",
-        Message::words(axes[1].clone()),
-        Message::words(axes[0].clone())
-    ));
+    let name = tr(msg!("Menu of the plot: {} over {}", &axes[1], &axes[0]));
     let button = egui::Button::new(egui::RichText::new("…").size(18.0))
         .frame(false)
         .min_size(vec2(side, side));

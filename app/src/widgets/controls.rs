@@ -17,7 +17,7 @@ pub fn slider(
     normal: f64,
     scale: f64,
     range: RangeInclusive<f64>,
-    label: &str,
+    label: &'static str,
 ) -> egui::Response {
     let mut shown = *value * scale;
     let unit = label.strip_suffix(']').and_then(|l| l.rsplit_once('['));

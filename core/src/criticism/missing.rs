@@ -6,6 +6,7 @@ use crate::diagnosis::MissingPart;
 use crate::effect::{Dimension, Place, StepPart, Variable};
 use crate::measurement::Kind;
 use crate::message::{Message, fixed};
+use crate::msg;
 use crate::uncertain::with_error;
 
 /// Estimates that explain less than this share of the squared error are not shown.
@@ -77,29 +78,61 @@ fn part(
             format!(" {unit}")
         }
     };
-    let article = match what {
-        "force" => "A force",
-        "input" => "A further input",
-        _ => "An error of the sensor",
-    };
     let share = fixed(100.0 * explained, 0);
     let strongest = parts
         .iter()
         .filter(|p| p.value.abs() > CLEAR * p.std_error)
-        .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
-    let mut values = vec![Message::words(axis.to_owned()), share];
-    let mut words =
-        format!("{article} that depends on the {{}} alone would explain {{}} % of what is left");
-    if let Some(p) = strongest {
-        words.push_str("; it is strongest from {} to {}, with {}");
-        let to = format!("{:.3}{}", p.to, shown(axis_unit));
-        values.extend([
-            fixed(p.from, 3),
-            to.into(),
-            with_error(p.value, p.std_error, unit),
-        ]);
-    }
-    let text = Message::Words((words + ".").into(), values);
+        .max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))
+        .map(|p| {
+            let to = format!("{:.3}{}", p.to, shown(axis_unit));
+            let value = with_error(p.value, p.std_error, unit);
+            [fixed(p.from, 3), to.into(), value]
+        });
+    let over = Message::words(axis.to_owned());
+    let text = match (what, strongest) {
+        ("force", None) => msg!(
+            "A force that depends on the {} alone would explain {} % of what is left.",
+            over,
+            share
+        ),
+        ("force", Some([from, to, value])) => msg!(
+            "A force that depends on the {} alone would explain {} % of what is left; it is strongest from {} to {}, \
+             with {}.",
+            over,
+            share,
+            from,
+            to,
+            value
+        ),
+        ("input", None) => msg!(
+            "A further input that depends on the {} alone would explain {} % of what is left.",
+            over,
+            share
+        ),
+        ("input", Some([from, to, value])) => msg!(
+            "A further input that depends on the {} alone would explain {} % of what is left; it is strongest from {} \
+             to {}, with {}.",
+            over,
+            share,
+            from,
+            to,
+            value
+        ),
+        (_, None) => msg!(
+            "An error of the sensor that depends on the {} alone would explain {} % of what is left.",
+            over,
+            share
+        ),
+        (_, Some([from, to, value])) => msg!(
+            "An error of the sensor that depends on the {} alone would explain {} % of what is left; it is strongest \
+             from {} to {}, with {}.",
+            over,
+            share,
+            from,
+            to,
+            value
+        ),
+    };
     MissingPart {
         what: what.to_owned(),
         unit: unit.to_owned(),

@@ -12,7 +12,7 @@ use crate::effect::baseline::RATE;
 use crate::effect::{self, Effect, EffectId, is_of_record, name_of};
 use crate::message::{Message, fixed};
 use crate::msg;
-use crate::uncertain::{in_unit, with_error};
+use crate::uncertain::{digits, in_unit, with_error};
 
 /// Effects that could stand in the place of one in the model.
 pub(super) type Class = Vec<&'static dyn Effect>;
@@ -99,7 +99,7 @@ fn contradiction(
         text.add(msg!(
             "The model holds {} = {}, but these data want {}.",
             Message::name(&c.name),
-            in_unit(format!("{:.4e}", c.held), &c.unit),
+            in_unit(digits(c.held, 5), &c.unit),
             with_error(c.wanted, c.std_error, &c.unit)
         ));
     }

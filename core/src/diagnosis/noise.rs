@@ -1,5 +1,6 @@
 //! The noise of the measured channels: the unit of the errors.
 
+use crate::msg;
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Quantity;
@@ -28,20 +29,23 @@ const COARSE: f64 = 0.3;
 impl ChannelNoise {
     /// `velocity noise 3.7 mrad/s, steps of 13.2 mrad/s`: steps far below the noise are not said.
     pub fn words(&self) -> Message {
-        let quantity = match self.quantity {
-            Quantity::Input => "input",
-            Quantity::Position | Quantity::LoadPosition => "position",
-            Quantity::Velocity | Quantity::LoadVelocity => "velocity",
-            Quantity::Output => "output",
-        };
+        use Quantity::{Input, LoadPosition, LoadVelocity, Output, Position, Velocity};
         let size = |value: f64| brief_quantity(value, &self.unit);
-        let noise = size(self.value).into();
-        match self.step.filter(|step| *step > COARSE * self.value) {
-            Some(step) => {
-                let words = format!("{quantity} noise {{}}, steps of {{}}");
-                Message::Words(words.into(), vec![noise, size(step).into()])
+        let noise = size(self.value);
+        let step = self.step.filter(|step| *step > COARSE * self.value);
+        match (self.quantity, step.map(size)) {
+            (Input, None) => msg!("input noise {}", noise),
+            (Input, Some(step)) => msg!("input noise {}, steps of {}", noise, step),
+            (Position | LoadPosition, None) => msg!("position noise {}", noise),
+            (Position | LoadPosition, Some(step)) => {
+                msg!("position noise {}, steps of {}", noise, step)
             }
-            None => Message::Words(format!("{quantity} noise {{}}").into(), vec![noise]),
+            (Velocity | LoadVelocity, None) => msg!("velocity noise {}", noise),
+            (Velocity | LoadVelocity, Some(step)) => {
+                msg!("velocity noise {}, steps of {}", noise, step)
+            }
+            (Output, None) => msg!("output noise {}", noise),
+            (Output, Some(step)) => msg!("output noise {}, steps of {}", noise, step),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::{
     Adhesion, Body, Command, Contact, Direction, Drive, DriveInput, DriveRun, EventKind, Summary,
     VelocityRelay, drifting_cycle, engaged_drift,
 };
-use crate::count::counted;
+use crate::counted;
 use crate::figures::{Check, digits};
 use crate::message::{Message, fixed};
 use crate::msg;
@@ -218,7 +218,7 @@ fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
         check(
             msg!(
                 "{} at the ends of the gap",
-                counted(run.impacts(), "impact")
+                counted!(run.impacts(), "1 impact", "{} impacts")
             ),
             run.impacts() > 0,
         ),
@@ -359,7 +359,10 @@ fn changes_its_drift_at_the_ends(
     }
     let count = summary.traverses.len();
     all.push(check(
-        msg!("it crosses the gap {}", counted(count, "time")),
+        msg!(
+            "it crosses the gap {}",
+            counted!(count, "1 time", "{} times")
+        ),
         count >= 2,
     ));
     let mean = summary.traverses.iter().map(|t| t.travel).sum::<f64>() / count.max(1) as f64;

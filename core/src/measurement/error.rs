@@ -1,7 +1,7 @@
 //! Why a file cannot be imported, in one line.
 
 use super::unit::ACCEPTED;
-use crate::count::counted;
+use crate::counted;
 use crate::message::{Message, says};
 use crate::msg;
 
@@ -298,7 +298,7 @@ impl Problem {
                 Message::name(other.clone())
             ),
             Self::Ragged { found, expected, hint } => {
-                let fields = counted(*found, "field");
+                let fields = counted!(*found, "1 field", "{} fields");
                 match *hint {
                     "" => msg!("{}, but the header has {}", fields, expected),
                     hint => msg!("{}, but the header has {}; {}", fields, expected, hint),
@@ -335,7 +335,7 @@ impl Problem {
             ),
             Self::TooShort { found, expected } => msg!(
                 "only {} of numbers; at least {} are needed to tell noise from signal",
-                counted(*found, "row"),
+                counted!(*found, "1 row", "{} rows"),
                 expected
             ),
         }

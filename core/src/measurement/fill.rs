@@ -7,6 +7,7 @@ use super::mapping::ImportOptions;
 use super::resembling::{RESEMBLING, Resembling, is_wanted};
 use super::{Kind, Quantity};
 use crate::message::Message;
+use crate::msg;
 
 /// What a measurement still needs of its columns: time, input, and what moves or comes out.
 fn lacking(fields: &[Field], options: &ImportOptions) -> Vec<Role> {
@@ -119,8 +120,7 @@ fn give(fields: &mut [Field], columns: &[FoundColumn], found: &[Candidates]) -> 
             }
             field.role = Some(role);
             let name = shorten(&field.name);
-            let words = format!("The column '{{}}' is taken for {}.", said(role));
-            notes.push(Message::Words(words.into(), vec![Message::name(name)]));
+            notes.push(taken(Message::name(name), role));
         }
     }
     notes
@@ -152,13 +152,21 @@ fn only_left(columns: &[FoundColumn], free: &[usize], found: &[Candidates]) -> O
     left.next().filter(|_| left.next().is_none())
 }
 
-/// A role in a sentence.
-fn said(role: Role) -> &'static str {
+/// That a column has a role.
+fn taken(column: Message, role: Role) -> Message {
     match role {
-        Role::Time => "the time",
-        Role::Measured(Quantity::Input) => "the input",
-        Role::Measured(Quantity::Position | Quantity::LoadPosition) => "the position",
-        Role::Measured(Quantity::Velocity | Quantity::LoadVelocity) => "the velocity",
-        Role::Measured(Quantity::Output) => "the output",
+        Role::Time => msg!("The column '{}' is taken for the time.", column),
+        Role::Measured(Quantity::Input) => {
+            msg!("The column '{}' is taken for the input.", column)
+        }
+        Role::Measured(Quantity::Position | Quantity::LoadPosition) => {
+            msg!("The column '{}' is taken for the position.", column)
+        }
+        Role::Measured(Quantity::Velocity | Quantity::LoadVelocity) => {
+            msg!("The column '{}' is taken for the velocity.", column)
+        }
+        Role::Measured(Quantity::Output) => {
+            msg!("The column '{}' is taken for the output.", column)
+        }
     }
 }

@@ -46,6 +46,6 @@ pub use guess::{Guess, guess};
 pub use kind::{Kind, Motion, Quantity};
 pub use mapping::{ImportOptions, Mapping, MappingError, TorqueConstant};
 pub use period::{Period, PeriodError};
-pub use record::{Channel, MIN_SAMPLES, Measurement};
+pub use record::{Channel, MIN_SAMPLES, Measurement, less_model};
 pub use table::{columns, import, import_csv};
 pub use unit::{COUNTS, constant_per, needs_torque_constant, usual_units};

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::column::{Role, role};
 use super::kind::{Kind, Motion, Quantity};
 use crate::message::Message;
+use crate::msg;
 
 /// One recorded column in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,6 +42,22 @@ impl Channel {
             }
             _ => &self.name,
         }
+    }
+}
+
+/// What a model leaves of a column with this name, as `x1 - model`. Behind a word a language may say minus: it would be
+/// read as a hyphen.
+pub fn less_model(name: &str) -> Message {
+    let symbol = |word: &str| {
+        word.contains(|c: char| c == '_' || c.is_ascii_digit())
+            || word.chars().count() < 2
+            || !word.contains(char::is_lowercase)
+    };
+    let column = Message::name(name);
+    if name.split_whitespace().all(symbol) {
+        msg!("{} - model", column)
+    } else {
+        msg!("{}{}", column, " - model")
     }
 }
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::message::Message;
+use crate::msg;
 use crate::relay::{Relay, RelayError};
 
 /// What the controller asks of its actuator.
@@ -23,6 +25,15 @@ impl Position {
             Self::Up => "up",
             Self::Off => "off",
             Self::Down => "down",
+        }
+    }
+
+    /// That it lasts so long.
+    pub fn lasting(self, time: String) -> Message {
+        match self {
+            Self::Up => msg!("up {}", time),
+            Self::Off => msg!("off {}", time),
+            Self::Down => msg!("down {}", time),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::svg::{Axis, Bar, Chart, bars, range};
 use crate::curve::envelope;
 use crate::diagnosis::{Finding, MissingPart, Profile, ReplayChannel, Step};
 use crate::effect::{StepPart, name_of};
-use crate::measurement::{Channel, Measurement};
+use crate::measurement::{Channel, Measurement, less_model};
 use crate::message::Message;
 use crate::msg;
 use crate::uncertain::brief;
@@ -142,7 +142,7 @@ pub(super) fn output(
     let residual_axis = |values: &[f64]| {
         let own = values.iter().copied().chain([-noise, noise]);
         Axis::roomy(
-            msg!("{} - model", name()),
+            less_model(&measured.name),
             &measured.unit,
             range(own).unwrap_or((0.0, 1.0)),
         )

@@ -1,5 +1,6 @@
 //! Everything about tuning one plant, for drawing: the experiment step by step, and the loops.
 
+use crate::uncertain::brief;
 use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
@@ -355,7 +356,7 @@ fn steps(input: &TuningInput, report: &TuningReport) -> Vec<Step> {
                 msg!(
                     "With K = {} the amplitude is off by {} of the wanted one.",
                     fixed(step.gain, 6),
-                    format!("{:.2e}", step.error)
+                    brief(step.error)
                 ),
                 &step.test,
                 Some(Pid::p(step.gain)),

@@ -55,7 +55,7 @@ impl Backlash {
                 let chosen = self.figure == Some(figure.number);
                 let button = ui
                     .add(egui::Button::new(tr(msg!("Fig. {}", figure.number))).selected(chosen))
-                    .on_hover_text(tr(format!("{}: {}", figure.title, figure.claim)));
+                    .on_hover_text(tr(msg!("{}: {}", figure.title, figure.claim)));
                 targets.note(format!("gap:figure-{}", figure.number), ui, &button);
                 if button.clicked() {
                     self.scene = None;

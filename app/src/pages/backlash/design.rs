@@ -1,6 +1,7 @@
 //! Which relay should one use on a drive that is known only roughly?
 
 use hysteron_core::drive::{Command, DriftingTest, DriveInput, RoughDrive, design_drifting_test};
+use hysteron_core::message::Message;
 use hysteron_core::message::fixed;
 use hysteron_core::msg;
 
@@ -14,7 +15,7 @@ pub struct Design {
     /// Expected gap, rad, and the largest torque, N m.
     pub gap: f64,
     pub torque: f64,
-    proposal: Option<Result<DriftingTest, String>>,
+    proposal: Option<Result<DriftingTest, Message>>,
 }
 
 impl Default for Design {
@@ -66,7 +67,7 @@ impl Design {
                 sampling: None,
                 velocity_noise: 2e-3,
             };
-            let proposal = design_drifting_test(&rough).map_err(|e| e.to_string());
+            let proposal = design_drifting_test(&rough).map_err(Message::from);
             if let Ok(test) = &proposal {
                 let mut proposed = test.relay;
                 // What runs here is the ideal relay; a controller should sample so fast.

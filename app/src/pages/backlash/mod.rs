@@ -200,7 +200,13 @@ impl Backlash {
                     let content = Content::Plain(bytes.into());
                     self.open_as(ctx, &name, content, arrival.reading);
                 }
-                Err(error) => self.message = Some(msg!("{}: cannot be read ({})", name, error)),
+                Err(error) => {
+                    self.message = Some(msg!(
+                        "{}: cannot be read ({})",
+                        Message::name(name),
+                        Message::name(error)
+                    ));
+                }
             }
         }
         let Some((of, job)) = &mut self.estimation else {

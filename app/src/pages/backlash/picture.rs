@@ -34,7 +34,7 @@ pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     view.ruler(&painter, ui);
     let middle = rect.center().y - 8.0;
     let (top, bottom) = (rect.top() + 6.0, rect.bottom() - 34.0);
-    let text = |at: Pos2, text: &str| {
+    let text = |at: Pos2, text: &'static str| {
         let font = FontId::proportional(13.0);
         painter.text(at, Align2::CENTER_CENTER, tr(text), font, Color32::BLACK);
     };

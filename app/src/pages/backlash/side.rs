@@ -38,7 +38,7 @@ impl Backlash {
     /// What is open, and the way back.
     fn measurement_ui(&mut self, ui: &mut egui::Ui, recent: &Recents, targets: &mut Targets) {
         let name = self.scene.as_ref().and_then(|s| s.file());
-        ui.strong(tr(name.unwrap_or("Reading ...")));
+        ui.strong(name.map_or_else(|| tr("Reading ..."), str::to_owned));
         if let Some(verdict) = self.scene.as_ref().and_then(|s| s.verdict()) {
             ui.label(tr_sentence(verdict));
         }

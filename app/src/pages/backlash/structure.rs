@@ -49,7 +49,7 @@ impl Diagram<'_> {
         )
     }
 
-    fn arrow(&self, from: f32, to: f32, name: &str) {
+    fn arrow(&self, from: f32, to: f32, name: &'static str) {
         let (a, b) = (self.at(from, 0.0), self.at(to, 0.0));
         self.painter.arrow(a, b - a, self.line);
         if name.is_empty() {
@@ -59,7 +59,7 @@ impl Diagram<'_> {
     }
 
     /// A way back, from behind one block to another at this height.
-    fn back(&self, from: f32, to: f32, y: f32, end: f32, name: &str) {
+    fn back(&self, from: f32, to: f32, y: f32, end: f32, name: &'static str) {
         let corners = [
             self.at(from, 0.0),
             self.at(from, y),
@@ -73,7 +73,7 @@ impl Diagram<'_> {
         self.say(middle + vec2(0.0, -8.0), name, self.line.color);
     }
 
-    fn say(&self, at: Pos2, text: &str, color: Color32) {
+    fn say(&self, at: Pos2, text: &'static str, color: Color32) {
         let font = self.font.clone();
         self.painter
             .text(at, Align2::CENTER_CENTER, tr(text), font, color);
@@ -88,7 +88,7 @@ impl Diagram<'_> {
     }
 
     /// A block with its name and its mode; it is lit while it acts.
-    fn block(&self, x: f32, names: [&str; 2], color: Color32, lit: bool) {
+    fn block(&self, x: f32, names: [&'static str; 2], color: Color32, lit: bool) {
         self.frame(x, HALF, faint(color, lit));
         let text = if lit { Color32::BLACK } else { self.line.color };
         for (name, y) in names.into_iter().zip([-9.0, 9.0]) {

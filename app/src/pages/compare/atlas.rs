@@ -108,8 +108,8 @@ fn twin<'a>(report: &'a StepReport, profile: &Profile) -> Option<&'a Profile> {
 }
 
 /// Name of an axis in words.
-pub(super) fn words(axis: &str) -> String {
-    axis.replace('_', " ")
+pub(super) fn words(axis: &str) -> Message {
+    Message::words(axis.replace('_', " "))
 }
 
 /// Label of an axis with its unit.
@@ -175,7 +175,7 @@ pub(super) fn draw(
     plot: &mut Pen<'_, '_>,
     profile: &Profile,
     value: impl Fn(&ProfileBin) -> f64,
-    (name, color): (&str, Color32),
+    (name, color): (&'static str, Color32),
     style: impl FnOnce(Line<'static>) -> Line<'static>,
 ) {
     let (name, points) = (tr(name), points(profile, value));
@@ -188,7 +188,7 @@ pub(super) fn draw(
 
 /// A small plot that stays where it is.
 pub(super) fn small(id: String, profile: &Profile, y: &'static str) -> Chart<'static> {
-    let axes = [axis_label(profile).to_string(), y.into()];
+    let axes = [axis_label(profile), y.into()];
     let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH).still();
     match (profile.bins.first(), profile.bins.last()) {
         (Some(first), Some(last)) if is_discrete(profile) => chart.with(|plot| {

@@ -2,6 +2,7 @@
 
 use hysteron_core::effect::{self, EffectId};
 use hysteron_core::measurement::Kind;
+use hysteron_core::message::Message;
 use hysteron_core::user_model::UserModel;
 use serde::{Deserialize, Serialize};
 
@@ -50,7 +51,7 @@ pub(super) struct Meant {
 
 impl Settings {
     /// What it names, where the user's `model` is this.
-    pub(super) fn meant(&self, model: Option<UserModel>) -> Result<Meant, String> {
+    pub(super) fn meant(&self, model: Option<UserModel>) -> Result<Meant, Message> {
         let effect = |id: &String| effect_of(id, model.as_ref());
         Ok(Meant {
             effects: self.effects.iter().map(effect).collect::<Result<_, _>>()?,
@@ -61,11 +62,11 @@ impl Settings {
 }
 
 /// An effect of the library, or of the user's own.
-pub(super) fn effect_of(id: &str, model: Option<&UserModel>) -> Result<EffectId, String> {
+pub(super) fn effect_of(id: &str, model: Option<&UserModel>) -> Result<EffectId, Message> {
     let own = model.iter().flat_map(|m| &m.candidates).map(|c| c.id);
     let library = effect::registry().iter().map(|e| e.id());
     library
         .chain(own)
         .find(|e| e.as_str() == id)
-        .ok_or_else(|| "This link adds an effect that does not exist.".to_owned())
+        .ok_or_else(|| "This link adds an effect that does not exist.".into())
 }

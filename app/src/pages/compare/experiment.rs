@@ -116,10 +116,10 @@ fn opening_ui(
                 };
                 let (place, command) = opened(opening, purpose(page, proposal, model));
                 let gain = in_unit(gain.to_string(), &proposal.input_unit);
-                let open = ui.button(tr(Message::Words(
-                    format!("{place} with gain {{}}").into(),
-                    vec![gain.into()],
-                )));
+                let open = ui.button(tr(match place {
+                    "Explore" => msg!("Explore with gain {}", gain),
+                    _ => msg!("Backlash with gain {}", gain),
+                }));
                 targets.note(format!("experiment:{index}:open:{k}:{j}"), ui, &open);
                 if open.clicked() {
                     commands.push(Command::Desk(command));
@@ -212,7 +212,7 @@ fn limits_ui(
 }
 
 fn rows_ui(limits: &mut Limits, proposal: &NextExperiment, drive: bool, ui: &mut egui::Ui) {
-    let mut row = |name: &str, value: &mut f64, unit: &str| {
+    let mut row = |name: &'static str, value: &mut f64, unit: &str| {
         let label = ui.label(tr(name));
         let speed = 0.01 * value.abs().max(1e-9);
         let drag = Typed::new(*value, unit, 1e-9..=1e9, 6)

@@ -78,13 +78,13 @@ pub(super) fn ui(
         ui.label(tr(sentence(print)));
     }
     ui.small(tr(FINGERPRINT));
-    let name = format!("what {} would leave", name_of(chosen));
+    let name = msg!("what {} would leave", name_of(chosen));
     caption_ui(
         ui,
         "Residual",
         &[
-            ("what is left", theme::RESIDUAL, Shape::Line),
-            (&name, theme::INPUT, Shape::Dashes),
+            ("what is left".into(), theme::RESIDUAL, Shape::Line),
+            (name, theme::INPUT, Shape::Dashes),
         ],
     );
     time_ui(measurement, report, print, ui);
@@ -155,7 +155,7 @@ fn time_ui(measurement: &Measurement, report: &StepReport, print: &Fingerprint, 
             .collect();
         let label = titled(Message::name(output.title()), &output.unit);
         let id = format!("fingerprint {} {index}", print.effect);
-        let axes = ["time [s]".to_owned(), label.to_string()];
+        let axes = ["time [s]".into(), label];
         let linked = egui::Id::unique("fingerprint");
         let chart = Chart::new(id, axes, HEIGHT, AXIS_WIDTH).linked(linked);
         chart.show(ui, |plot| {

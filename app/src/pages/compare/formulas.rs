@@ -91,10 +91,7 @@ impl Compare {
                 for p in &formula.parameters {
                     ui.horizontal_wrapped(|ui| {
                         equation_ui(ui, &p.name, &|_| None);
-                        ui.label(tr(format!(
-                            "= {}",
-                            with_error(p.value, p.std_error, &p.unit)
-                        )));
+                        ui.label(tr(msg!("= {}", with_error(p.value, p.std_error, &p.unit))));
                         if p.is_told() && p.std_error > 0.0 {
                             ui.weak(tr(msg!("95 %: {}", p.interval())));
                         }

@@ -100,8 +100,8 @@ const AXIS_WIDTH: f32 = 60.0;
 fn plot_ui(part: &MissingPart, height: f32, ui: &mut egui::Ui) {
     let size = part.parts.iter().map(|p| p.value.abs()).fold(0.0, f64::max);
     let (x, y) = (
-        titled(Message::words(part.axis.clone()), &part.axis_unit).to_string(),
-        titled(Message::words(part.what.clone()), &part.unit).to_string(),
+        titled(Message::words(part.axis.clone()), &part.axis_unit),
+        titled(Message::words(part.what.clone()), &part.unit),
     );
     let id = format!("missing {} {}", part.what, part.axis);
     let chart = Chart::new(id, [x, y], height, AXIS_WIDTH).still();

@@ -71,7 +71,11 @@ impl Compare {
             match arrival.bytes {
                 Ok(bytes) => self.open_as(ctx, &name, bytes, arrival.reading),
                 Err(error) => {
-                    self.refuse(msg!("{}: cannot be read ({})", Message::name(name), error));
+                    self.refuse(msg!(
+                        "{}: cannot be read ({})",
+                        Message::name(name),
+                        Message::name(error)
+                    ));
                 }
             }
         }

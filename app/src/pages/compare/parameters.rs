@@ -96,7 +96,7 @@ fn equations_ui(
         let p = &report.step.parameters[place];
         Some(format!(
             "{} = {}",
-            tr(&p.label),
+            tr(Message::words(p.label.clone())),
             tr(value_text(p, values[place]))
         ))
     };
@@ -164,7 +164,7 @@ fn slider_ui(p: &Parameter, value: &mut f64, ui: &mut egui::Ui) -> egui::Respons
         let said = tr(value_text(p, *value));
         ui.ctx()
             .accesskit_node_builder(slider.id, |node| node.set_value(said));
-        let label = egui::RichText::new(tr(&p.label)).small();
+        let label = egui::RichText::new(tr(Message::words(p.label.clone()))).small();
         let label = ui.add(egui::Label::new(label).truncate());
         slider.labelled_by(label.id)
     })
@@ -191,5 +191,5 @@ fn interval_ui(p: &Parameter, ui: &mut egui::Ui) {
     } else {
         painter.rect_filled(bar, 1.0, theme::MODEL);
     }
-    response.on_hover_text(tr(format!("95 % interval: {}", p.interval())));
+    response.on_hover_text(tr(msg!("95 % interval: {}", p.interval())));
 }

@@ -6,7 +6,7 @@ use egui_plot::{
     HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotResponse, Span, Text,
 };
 use hysteron_core::diagnosis::{Finding, ReplayChannel};
-use hysteron_core::measurement::{Channel, Measurement, Quantity};
+use hysteron_core::measurement::{Channel, Measurement, Quantity, less_model};
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
 use hysteron_core::uncertain::titled;
@@ -110,7 +110,7 @@ struct Size {
 }
 
 /// What stands in the plots, for all of them.
-fn curves(page: &Compare, modelled: bool) -> Vec<Key<'static>> {
+fn curves(page: &Compare, modelled: bool) -> Vec<Key> {
     let mut curves = vec![("measured", theme::MEASURED, Shape::Line)];
     if modelled {
         curves.push(("model", theme::MODEL, Shape::Dashes));
@@ -131,12 +131,12 @@ fn plot<'a>(
     measurement: &Measurement,
     finding: Option<&Finding>,
     id: String,
-    y_label: String,
+    y_label: Message,
     size: Size,
 ) -> Chart<'a> {
     let group = egui::Id::unique(("compare", &measurement.name));
     let (start, end) = view_of(measurement, finding);
-    let axes = ["time [s]".to_owned(), y_label];
+    let axes = ["time [s]".into(), y_label];
     let chart = Chart::new(id, axes, size.height, size.labels)
         .zoomed_as("time")
         .linked(group);
@@ -207,7 +207,7 @@ fn signal_plot(
     finding: Option<&Finding>,
     size: Size,
 ) {
-    let label = titled(Message::name(output.title()), &output.unit).to_string();
+    let label = titled(Message::name(output.title()), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
     let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let alone = measurement.outputs.len() == 1;
@@ -266,8 +266,7 @@ fn residual_plot(
     finding: Option<&Finding>,
     size: Size,
 ) {
-    let name = msg!("{} - model", Message::name(output.title()));
-    let label = titled(name, &output.unit).to_string();
+    let label = titled(less_model(output.title()), &output.unit);
     let less = |model: &ReplayChannel| -> Vec<f64> {
         let pairs = output.values.iter().zip(&model.modelled);
         pairs.map(|(y, m)| y - m).collect()

@@ -79,7 +79,7 @@ pub(super) fn file_ui(
 ) {
     ui.horizontal_wrapped(|ui| {
         if let Some(m) = &page.measurement {
-            ui.strong(tr(&m.name));
+            ui.strong(&m.name);
             ui.label(tr(msg!("{} samples", m.len())));
         }
         if ui.button(tr("Open another")).clicked() {
@@ -191,14 +191,14 @@ fn candidates_ui(
 }
 
 /// What an effect is: a sentence, its equation, and where that is from.
-fn described(page: &Compare, id: EffectId) -> Option<(&'static str, String, &'static str)> {
+fn described(page: &Compare, id: EffectId) -> Option<(&'static str, Message, &'static str)> {
     if let Some(e) = effect::find(id) {
-        return Some((e.sentence(), e.equation().to_owned(), e.source()));
+        return Some((e.sentence(), e.equation().into(), e.source()));
     }
     let formula = page.model.as_ref()?.formula(id)?;
     let equation = match page.measurement.as_ref().map(|m| m.kind) {
-        Some(Kind::Process) => format!("Input = {formula}"),
-        _ => format!("F = {formula}"),
+        Some(Kind::Process) => msg!("Input = {}", Message::name(formula)),
+        _ => Message::name(format!("F = {formula}")),
     };
     Some(("An effect of your own.", equation, "your own formula"))
 }
@@ -232,23 +232,19 @@ fn card_ui(
         );
         ui.label(tr(sentence));
         if !candidate.equivalent_to.is_empty() {
-            let names: Vec<&str> = candidate
-                .equivalent_to
-                .iter()
-                .map(|e| name_of(*e))
-                .collect();
+            let names = candidate.equivalent_to.iter().map(|e| name_of(*e));
             ui.colored_label(
                 ui.visuals().warn_fg_color,
                 tr(msg!(
                     "These data cannot tell it apart from {}.",
-                    names.join(" or ")
+                    Message::list(" or ", names)
                 )),
             );
         }
         egui::CollapsingHeader::new(tr("Equation"))
             .id_salt(id.as_str())
             .show(ui, |ui| {
-                equation_ui(ui, &tr(&equation), &|_| None);
+                equation_ui(ui, &tr(equation), &|_| None);
                 ui.small(tr(source));
                 for p in &candidate.parameters {
                     ui.horizontal_wrapped(|ui| {

@@ -9,7 +9,7 @@ use super::answer::times_noise;
 use super::command::Command;
 use super::state::Compare;
 use crate::hook::Targets;
-use crate::language::tr;
+use crate::language::{tr, tr_number};
 use crate::motion;
 use crate::theme;
 
@@ -82,7 +82,7 @@ pub(super) fn ui(
             // What was taken back is still there, but fainter.
             let strength = if n > at { 0.4 } else { 1.0 };
             if let Some(report) = report {
-                ui.label(tr(times_noise(report.step.error)));
+                ui.label(tr_number(times_noise(report.step.error)));
                 let color = theme::MODEL.gamma_multiply(strength);
                 bar_ui(ui, report.step.error, floor, largest, color, width);
             } else if page.earlier.is_some() {
@@ -91,14 +91,18 @@ pub(super) fn ui(
             ui.end_row();
         }
         if let Some((error, exact)) = page.hand_error() {
-            let about = if exact { "" } else { "≈ " };
             ui.label(format!("   {}", tr("By hand")));
-            ui.label(tr(format!("{about}{}", times_noise(error))));
+            let times = times_noise(error);
+            ui.label(tr(if exact {
+                times.into()
+            } else {
+                msg!("≈ {}", times)
+            }));
             bar_ui(ui, error, floor, largest, theme::BEFORE, width);
             ui.end_row();
         }
         ui.label(tr("   Noise floor"));
-        ui.label(tr(times_noise(floor)));
+        ui.label(tr_number(times_noise(floor)));
         bar_ui(ui, floor, floor, largest, theme::NOISE, width);
         ui.end_row();
     });

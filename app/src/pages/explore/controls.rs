@@ -48,7 +48,7 @@ impl Explore {
                             .selected(chosen)
                             .frame(true),
                     )
-                    .on_hover_text(tr(format!("{}: {}", figure.title, figure.claim)));
+                    .on_hover_text(tr(msg!("{}: {}", figure.title, figure.claim)));
                 if button.clicked() {
                     self.figure = (!chosen).then_some(figure.number);
                     if !chosen {

@@ -3,6 +3,7 @@
 use crate::language::{tr, tr_number};
 use crate::theme;
 use crate::widgets::chart::significant;
+use hysteron_core::message::Message;
 
 /// What one way says of the cycle: numbers in the order of the titles, and whether it is stable; nothing where it sees
 /// none.
@@ -22,7 +23,12 @@ pub const APART: f32 = 14.0;
 const EXACT: usize = 1;
 
 /// Draws the numbers, each with its difference from the exact one in per cent, in columns so far apart, points.
-pub fn ui<const N: usize>(ui: &mut egui::Ui, titles: [&str; N], apart: f32, rows: &[Row<N>; 3]) {
+pub fn ui<const N: usize>(
+    ui: &mut egui::Ui,
+    titles: [&'static str; N],
+    apart: f32,
+    rows: &[Row<N>; 3],
+) {
     egui::Grid::new("cycles")
         .num_columns(N + 2)
         .striped(true)
@@ -73,17 +79,17 @@ fn four_digits(value: f64) -> String {
 }
 
 /// By how much a value differs from the exact one, in per cent.
-pub fn difference(value: f64, exact: f64) -> String {
+pub fn difference(value: f64, exact: f64) -> Message {
     /// Below this many per cent two results are the same but for rounding.
     const ROUNDING: f64 = 1e-8;
     let percent = 100.0 * (value / exact - 1.0);
     if percent.abs() < ROUNDING {
-        "same".to_owned()
+        "same".into()
     } else if percent.abs() < 0.005 {
         let sign = if percent > 0.0 { "+" } else { "" };
-        format!("{sign}{} %", significant(percent, 1))
+        format!("{sign}{} %", significant(percent, 1)).into()
     } else {
-        format!("{percent:+.2} %")
+        format!("{percent:+.2} %").into()
     }
 }
 

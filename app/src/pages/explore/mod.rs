@@ -88,7 +88,7 @@ enum About {
 struct Finished {
     input: ExploreInput,
     figure: Option<u32>,
-    data: Result<(ExploreData, Vec<Check>), String>,
+    data: Result<(ExploreData, Vec<Check>), Message>,
 }
 
 /// The page as the registry has it.
@@ -239,7 +239,7 @@ impl Explore {
         self.finished = Some(Finished {
             input: self.input.clone(),
             figure: self.figure,
-            data: data.map_err(|e| e.to_string()),
+            data: data.map_err(Message::from),
         });
     }
 

@@ -1,5 +1,6 @@
 //! The Nyquist plot: plant, -1/N(a), where they meet; the line and the point S can be dragged.
 
+use hysteron_core::message::Message;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
@@ -106,14 +107,14 @@ impl Nyquist {
                         .radius(8.0)
                         .shape(MarkerShape::Square),
                 );
-                let text = tr(msg!("S: margin φ = {}°", fixed(phi.to_degrees(), 1)));
+                let text = msg!("S: margin φ = {}°", fixed(phi.to_degrees(), 1));
                 // Above it: below the line stands the amplitude.
                 let above = [at[0] - 0.08 * view, at[1] + 0.08 * view];
                 plot.text(label("S", text, above).anchor(egui::Align2::LEFT_BOTTOM));
             }
             if let Some((a, at)) = marker {
                 plot.points(dot("a", at));
-                let text = format!("a = {a:.3}");
+                let text = format!("a = {a:.3}").into();
                 plot.text(label("a", text, [at[0], at[1] - 0.09 * view]));
             }
         });
@@ -191,7 +192,7 @@ fn unit_circle() -> PlotPoints<'static> {
         .collect()
 }
 
-fn label(name: &'static str, text: String, at: [f64; 2]) -> Text {
+fn label(name: &'static str, text: Message, at: [f64; 2]) -> Text {
     let text = egui::RichText::new(tr(text)).size(15.0).strong();
     Text::new(name, PlotPoint::new(at[0], at[1]), text)
 }

@@ -19,16 +19,18 @@ impl Explore {
     /// Takes what files and their reading have brought.
     pub(super) fn take_files(&mut self, ctx: &egui::Context) {
         while let Some(arrival) = self.files.arrived() {
-            let text = arrival.bytes.and_then(|bytes| {
+            let bytes = arrival.bytes.map_err(Message::name);
+            let text = bytes.and_then(|bytes| {
                 if bytes.len() > LONGEST {
-                    return Err("it is too long for a scenario".to_owned());
+                    return Err("it is too long for a scenario".into());
                 }
-                String::from_utf8(bytes).map_err(|_| "it is no text".to_owned())
+                String::from_utf8(bytes).map_err(|_| "it is no text".into())
             });
             match text {
                 Ok(text) => self.reading = Some(Job::run(ctx, ScenarioTask(text))),
                 Err(error) => {
-                    self.message = Some(msg!("{}: cannot be read ({})", arrival.name, error));
+                    let name = Message::name(arrival.name);
+                    self.message = Some(msg!("{}: cannot be read ({})", name, error));
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! The plant: chosen, or typed as a formula. What cannot be read is explained and changes nothing.
 
+use hysteron_core::message::Message;
 use hysteron_core::message::fixed;
 use hysteron_core::msg;
 use hysteron_core::plant::{TransferFunction, parse, presets};
@@ -14,13 +15,13 @@ pub struct PlantEditor {
     text: String,
     /// The plant that the text stands for, if it can be read.
     read: Option<TransferFunction>,
-    error: Option<String>,
+    error: Option<Message>,
 }
 
 impl PlantEditor {
     /// Why the text is not taken.
-    pub fn error(&self) -> Option<&str> {
-        self.error.as_deref()
+    pub fn error(&self) -> Option<&Message> {
+        self.error.as_ref()
     }
 
     /// Draws the editor; true when the plant was changed here.
@@ -74,7 +75,7 @@ impl PlantEditor {
                 changed
             }
             Err(error) => {
-                self.error = Some(error.to_string());
+                self.error = Some(error.into());
                 false
             }
         }
@@ -125,11 +126,11 @@ fn describe_ui(ui: &mut egui::Ui, plant: &TransferFunction) {
     });
 }
 
-fn list(roots: &[String]) -> String {
+fn list(roots: &[String]) -> Message {
     if roots.is_empty() {
-        "none".to_owned()
+        "none".into()
     } else {
-        roots.join(",  ")
+        roots.join(",  ").into()
     }
 }
 

@@ -36,10 +36,7 @@ pub fn harmonics_ui(ui: &mut egui::Ui, data: &ExploreData) {
             continue;
         }
         ui.horizontal(|ui| {
-            ui.add_sized(
-                [24.0, 14.0],
-                egui::Label::new(tr(format!("{}", harmonic.order))),
-            );
+            ui.add_sized([24.0, 14.0], egui::Label::new(harmonic.order.to_string()));
             let (rect, _) = ui.allocate_exact_size(egui::vec2(230.0, 10.0), egui::Sense::hover());
             let mut bar = rect;
             bar.set_width((rect.width() * share as f32).max(1.5));

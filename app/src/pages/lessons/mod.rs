@@ -8,6 +8,7 @@ use crate::lessons::{self, Lesson};
 use crate::page::{Page, Settable, View};
 use crate::theme;
 use hysteron_core::message::Message;
+use hysteron_core::msg;
 
 /// The page.
 #[derive(Default)]
@@ -80,7 +81,7 @@ fn lesson_ui(ui: &mut egui::Ui, desk: &mut Desk, index: usize, lesson: &Lesson) 
     }
     lesson.beginning_ui(ui);
     ui.horizontal(|ui| {
-        ui.small(tr(format!("{} minutes", lesson.minutes)));
+        ui.small(tr(msg!("{} minutes", lesson.minutes)));
         if desk.study.solved.contains(lesson.id) {
             ui.colored_label(theme::readable(ui, theme::NOISE), tr("solved"));
         }

@@ -128,15 +128,27 @@ impl Maps {
         } else {
             Message::default()
         };
-        if self.quantity == Quantity::Stability {
-            let stable = 100.0 * values.iter().sum::<f64>() / values.len() as f64;
-            return msg!("{} % of the cycles are stable.", fixed(stable, 0)).and(tail);
-        }
-        let label = self.quantity.label();
-        let initial = label[..1].to_uppercase();
-        let words = format!("{initial}{} from {{}} to {{}}.", &label[1..]);
-        let ends = [number(*least), with_unit(*most, self.quantity.unit())];
-        Message::Words(words.into(), ends.map(Message::from).to_vec()).and(tail)
+        let (from, to) = (number(*least), with_unit(*most, self.quantity.unit()));
+        let range = match self.quantity {
+            Quantity::Period => msg!("Period from {} to {}.", from, to),
+            Quantity::Amplitude => msg!("Amplitude a from {} to {}.", from, to),
+            Quantity::UltimateGain => msg!("Ultimate gain Ku from {} to {}.", from, to),
+            Quantity::PeriodError => msg!(
+                "Describing function's error in period from {} to {}.",
+                from,
+                to
+            ),
+            Quantity::AmplitudeError => msg!(
+                "Describing function's error in amplitude from {} to {}.",
+                from,
+                to
+            ),
+            Quantity::Stability => {
+                let stable = 100.0 * values.iter().sum::<f64>() / values.len() as f64;
+                msg!("{} % of the cycles are stable.", fixed(stable, 0))
+            }
+        };
+        range.and(tail)
     }
 
     fn picture_ui(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
@@ -267,12 +279,13 @@ impl Maps {
             .filter_map(|place| Some((place, self.map.known(place)?)))
             .collect();
         let (x, y) = (self.input.x, self.input.y);
-        let title = |axis: Axis| axis_title(axis.parameter.label(), axis.parameter.unit());
+        let title =
+            |axis: Axis| axis_title(axis.parameter.label(), axis.parameter.unit()).to_string();
         let mut table = Table::new("map")
             .with(title(x), known.iter().map(|(p, _)| x.value(p[0], size)))
             .with(title(y), known.iter().map(|(p, _)| y.value(p[1], size)));
         for quantity in Quantity::ALL {
-            let title = axis_title(quantity.label(), quantity.unit());
+            let title = axis_title(quantity.label(), quantity.unit()).to_string();
             let values = known
                 .iter()
                 .map(|(_, o)| quantity.value(o).unwrap_or(f64::NAN));

@@ -3,6 +3,7 @@
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
 use egui_plot::{MarkerShape, PlotImage, PlotPoint, Points};
 use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
+use hysteron_core::msg;
 
 use super::words::{axis_title, number, stability, with_unit};
 use crate::colors::viridis;
@@ -161,8 +162,9 @@ fn scale(values: &[f64], quantity: Quantity) -> [f64; 2] {
 }
 
 /// All values of a loop, a line each.
-fn reading(names: [(&str, &str); 2], values: [f64; 2], outcome: &Outcome) -> String {
-    let line = |name: &str, value: f64, unit| tr(format!("{name} {}", with_unit(value, unit)));
+fn reading(names: [(&'static str, &str); 2], values: [f64; 2], outcome: &Outcome) -> String {
+    let line =
+        |name: &'static str, value: f64, unit| tr(msg!("{} {}", name, with_unit(value, unit)));
     let mut lines: Vec<String> = names
         .iter()
         .zip(values)

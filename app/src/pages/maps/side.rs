@@ -2,6 +2,7 @@
 
 use hysteron_core::explore::ExploreInput;
 use hysteron_core::maps::{Axis, Parameter, Quantity};
+use hysteron_core::message::Message;
 
 use super::Maps;
 use super::words::{axis_title, stability, with_unit};
@@ -73,10 +74,10 @@ impl Maps {
                 .striped(true)
                 .show(ui, |ui| {
                     for quantity in Quantity::ALL {
-                        let text = match (quantity, quantity.value(&outcome)) {
-                            (_, None) => "none".to_owned(),
-                            (Quantity::Stability, Some(v)) => stability(v).to_owned(),
-                            (_, Some(v)) => with_unit(v, quantity.unit()),
+                        let text: Message = match (quantity, quantity.value(&outcome)) {
+                            (_, None) => "none".into(),
+                            (Quantity::Stability, Some(v)) => stability(v).into(),
+                            (_, Some(v)) => with_unit(v, quantity.unit()).into(),
                         };
                         ui.label(tr(quantity.label()));
                         ui.label(tr(text));
@@ -104,7 +105,7 @@ fn suffix(unit: &str) -> String {
 
 fn axis_ui(
     ui: &mut egui::Ui,
-    name: &str,
+    name: &'static str,
     axis: &mut Axis,
     base: &hysteron_core::explore::ExploreInput,
 ) {

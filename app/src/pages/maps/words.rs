@@ -1,5 +1,8 @@
 //! How numbers and names stand on the map and beside it.
 
+use hysteron_core::message::Message;
+use hysteron_core::msg;
+
 /// Four digits that mean something.
 pub fn number(value: f64) -> String {
     let size = value.abs();
@@ -24,11 +27,11 @@ pub fn with_unit(value: f64, unit: &str) -> String {
 }
 
 /// Name with its unit, for axes.
-pub fn axis_title(label: &str, unit: &str) -> String {
+pub fn axis_title(label: &'static str, unit: &'static str) -> Message {
     if unit.is_empty() {
-        label.to_owned()
+        label.into()
     } else {
-        format!("{label} [{unit}]")
+        msg!("{} [{}]", label, unit.to_owned())
     }
 }
 

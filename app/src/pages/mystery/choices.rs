@@ -123,16 +123,11 @@ impl Bench {
     /// What the page may choose, in words.
     fn surprise(&self) -> Message {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
-        let names: Vec<&str> = self
-            .menu()
-            .iter()
-            .filter(shown)
-            .map(Hideable::name)
-            .collect();
+        let names = self.menu().iter().filter(shown).map(Hideable::name);
         msg!(
             "It may hide: {}. One mystery in five hides nothing, half of them one effect, the others two of \
              different kinds, all between small and large.",
-            names.join(", ")
+            Message::list(", ", names)
         )
     }
 
@@ -206,11 +201,7 @@ fn strength_ui(ui: &mut Ui, effect: &Hideable, value: &mut f64) {
         let at = effect.value(strength);
         let button = ui
             .selectable_label(*value == at, tr(strength_name(strength)))
-            .on_hover_text(tr(format!(
-                "{}: {}",
-                effect.name(),
-                strength_name(strength)
-            )));
+            .on_hover_text(tr(msg!("{}: {}", effect.name(), strength_name(strength))));
         if button.clicked() {
             *value = at;
         }

@@ -64,13 +64,13 @@ struct Pen {
 }
 
 impl Pen {
-    fn text(&self, at: Pos2, align: Align2, text: &str, size: f32, color: Color32) {
+    fn text(&self, at: Pos2, align: Align2, text: &'static str, size: f32, color: Color32) {
         let font = FontId::proportional(size);
         self.painter.text(at, align, tr(text), font, color);
     }
 
     /// A name, and a curve from -1 to 1 beneath it.
-    fn curve(&self, rect: Rect, name: &str, values: &[f32], color: Color32) {
+    fn curve(&self, rect: Rect, name: &'static str, values: &[f32], color: Color32) {
         self.text(
             rect.center_top(),
             Align2::CENTER_TOP,
@@ -90,7 +90,7 @@ impl Pen {
     }
 
     /// Motor and load on a shaft, or valve and tank on a pipe, and what stands between them.
-    fn system(&self, rect: Rect, near: &str, far: &str) {
+    fn system(&self, rect: Rect, near: &'static str, far: &'static str) {
         let middle = rect.center().y + 10.0;
         let end = 0.12 * rect.width();
         for (tip, from) in [

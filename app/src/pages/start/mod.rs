@@ -67,7 +67,7 @@ const MORE: [(&str, &str); 4] = [
 pub struct Start {
     playback: Playback,
     /// The last loop and what it does.
-    finished: Option<(ExploreInput, Result<ExploreData, String>)>,
+    finished: Option<(ExploreInput, Result<ExploreData, Message>)>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -154,7 +154,7 @@ impl Start {
             .as_ref()
             .is_none_or(|(known, _)| known != input)
         {
-            let data = compute(input).map_err(|e| e.to_string());
+            let data = compute(input).map_err(Message::from);
             self.finished = Some((input.clone(), data));
         }
     }

@@ -1,7 +1,7 @@
 //! Step 3: the gain for a phase margin, by the relay of equation (7) and the adaptation (8).
 
 use egui_plot::{Line, MarkerShape, Points};
-use hysteron_core::count::counted;
+use hysteron_core::counted;
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
 use hysteron_core::tuning::{AdaptationStep, PhaseMarginReport};
@@ -159,7 +159,7 @@ fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
         &["n", "K(n)", "a(n)", "error of a"],
         |ui| {
             for (n, step) in secant.steps.iter().take(shown).enumerate() {
-                ui.label(tr(n.to_string()));
+                ui.label(n.to_string());
                 ui.label(tr_number(format!("{:.6}", step.gain)));
                 ui.label(tr_number(format!("{:.6}", a(step))));
                 ui.label(tr_number(significant(step.error, 2)));
@@ -184,7 +184,7 @@ fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     } else {
         ui.label(tr(msg!(
             "It has the wanted amplitude after {}; Steffensen's steps took {}.",
-            counted(secant.steps.len(), "run"),
+            counted!(secant.steps.len(), "1 run", "{} runs"),
             found
                 .adaptation
                 .steps
@@ -202,13 +202,15 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     let heads = ["n", "K(n)", "error of a", "period [s]", "order"];
     table(ui, "adaptation table", &heads, |ui| {
         for (n, step) in adaptation.steps.iter().enumerate() {
-            ui.label(tr(n.to_string()));
+            ui.label(n.to_string());
             ui.label(tr_number(format!("{:.6}", step.gain)));
             ui.label(tr_number(significant(step.error, 2)));
-            ui.label(tr(number(step.test.period)));
+            ui.label(tr_number(number(step.test.period)));
             // The first order needs three errors.
             let order = n.checked_sub(2).and_then(|i| adaptation.orders.get(i));
-            ui.label(tr(order.map_or_else(String::new, |o| format!("{o:.2}"))));
+            ui.label(tr_number(
+                order.map_or_else(String::new, |o| format!("{o:.2}")),
+            ));
             ui.end_row();
         }
     });

@@ -1,6 +1,7 @@
 //! What the steps draw alike.
 
 use egui_plot::{Line, LineStyle, PlotPoints};
+use hysteron_core::message::Message;
 use hysteron_core::tuning::{Pid, RelayTest};
 use hysteron_core::uncertain::digits;
 
@@ -19,13 +20,14 @@ pub fn number(value: f64) -> String {
 }
 
 /// A value that may be missing.
-pub fn maybe(value: Option<f64>, otherwise: &str) -> String {
-    value.map_or_else(|| otherwise.to_owned(), number)
+pub fn maybe(value: Option<f64>, otherwise: &'static str) -> Message {
+    value.map_or_else(|| otherwise.into(), |value| number(value).into())
 }
 
 /// A relative error in words.
-pub fn error(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |e| format!("{:+.1} %", 100.0 * e))
+pub fn error(value: Option<f64>) -> Message {
+    let error = value.map(|e| format!("{:+.1} %", 100.0 * e));
+    error.unwrap_or_default().into()
 }
 
 /// The controller's settings.
@@ -44,8 +46,8 @@ pub fn controller(pid: &Pid) -> String {
 pub const CAPTION: f32 = 26.0;
 
 /// An empty plot with named axes; the wheel scrolls the page.
-pub fn plot<'a>(id: &str, height: f32, x: &str, y: &str) -> Chart<'a> {
-    Chart::new(id, [x, y], height, 0.0)
+pub fn plot<'a>(id: &str, height: f32, x: &'static str, y: impl Into<Message>) -> Chart<'a> {
+    Chart::new(id, [x.into(), y.into()], height, 0.0)
 }
 
 /// Points as a curve.
@@ -134,7 +136,12 @@ pub fn cell(ui: &mut egui::Ui, width: Option<f32>, content: impl egui::Widget) -
 }
 
 /// A table with a heading; wider than the window, it can be scrolled.
-pub fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egui::Ui)) {
+pub fn table(
+    ui: &mut egui::Ui,
+    id: &str,
+    heads: &[&'static str],
+    rows: impl FnOnce(&mut egui::Ui),
+) {
     set_table(ui, id, heads, false, rows);
 }
 
@@ -142,7 +149,7 @@ pub fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut
 pub fn set_table(
     ui: &mut egui::Ui,
     id: &str,
-    heads: &[&str],
+    heads: &[&'static str],
     tight: bool,
     rows: impl FnOnce(&mut egui::Ui),
 ) {

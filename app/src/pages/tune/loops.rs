@@ -52,7 +52,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     ui.label(tr(msg!(
         "Before: {}. After: {}.",
         controller(&report.before.pid),
-        after.map_or_else(|| "none".to_owned(), |a| controller(&a.pid))
+        after.map_or_else(|| "none".into(), |a| Message::from(controller(&a.pid)))
     )));
     let half = (0.5 * height - 16.0).max(200.0);
     beside(
@@ -113,7 +113,7 @@ pub fn tables(report: &TuningReport) -> Vec<Table> {
 
 fn response_ui(
     ui: &mut egui::Ui,
-    [id, axis]: [&str; 2],
+    [id, axis]: [&'static str; 2],
     before: &LoopReport,
     after: Option<&LoopReport>,
     part: fn(&LoopReport) -> &Response,
@@ -161,7 +161,7 @@ fn response_ui(
 }
 
 /// The curves of both loops.
-fn curves(tuned: bool) -> Vec<Key<'static>> {
+fn curves(tuned: bool) -> Vec<Key> {
     let mut curves = vec![("before", BEFORE, Shape::Dashes)];
     if tuned {
         curves.push(("after", AFTER, Shape::Line));
@@ -224,7 +224,7 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
 fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, horizon: f64) {
     let [before_color, after_color] = [BEFORE, AFTER].map(|c| theme::readable(ui, c));
     table(ui, "loops", &["", "before", "after"], |ui| {
-        let mut row = |name: &str, value: &dyn Fn(&LoopReport) -> Message| {
+        let mut row = |name: &'static str, value: &dyn Fn(&LoopReport) -> Message| {
             ui.label(tr(name));
             ui.colored_label(before_color, tr(value(before)));
             ui.colored_label(after_color, tr(after.map_or_else(Message::default, value)));
@@ -236,16 +236,16 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
         });
         row("gain margin", &|l| {
             l.margins
-                .map_or_else(dash, |m| maybe(m.gain_margin, "without limit").into())
+                .map_or_else(dash, |m| maybe(m.gain_margin, "without limit"))
         });
         row("phase margin [°]", &|l| {
             l.margins.map_or_else(dash, |m| {
-                maybe(m.phase_margin.map(f64::to_degrees), "without limit").into()
+                maybe(m.phase_margin.map(f64::to_degrees), "without limit")
             })
         });
         row("delay margin [s]", &|l| {
             l.margins
-                .map_or_else(dash, |m| maybe(m.delay_margin, "without limit").into())
+                .map_or_else(dash, |m| maybe(m.delay_margin, "without limit"))
         });
         row("sensitivity Ms", &|l| {
             l.margins
@@ -255,7 +255,7 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
             stable(l, format!("{:.0}", 100.0 * l.set_point.overshoot))
         });
         row("settled after [s]", &|l| {
-            maybe(l.set_point.settling_time, "not yet").into()
+            maybe(l.set_point.settling_time, "not yet")
         });
         row("load error [s]", &|l| stable(l, number(l.load.iae)));
         row("load peak", &|l| stable(l, number(l.load.peak)));

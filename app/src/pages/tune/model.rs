@@ -94,7 +94,7 @@ fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
     );
     for failed in [&found.berner, &found.shen] {
         if let Err(error) = failed {
-            ui.small(tr(error.to_string()));
+            ui.small(tr(Message::from(error)));
         }
     }
     ui.small(tr(
@@ -116,20 +116,20 @@ fn table_ui(ui: &mut egui::Ui, found: &AsymmetricTest) {
     }
 }
 
-fn row_ui(ui: &mut egui::Ui, name: &str, model: &Result<Model, TuningError>) {
+fn row_ui(ui: &mut egui::Ui, name: &'static str, model: &Result<Model, TuningError>) {
     ui.label(tr(name));
-    let cells = match model {
+    let cells: [Message; 3] = match model {
         Ok(Model::Lag {
             gain,
             time_constant,
             dead_time,
-        }) => [number(*gain), number(*time_constant), number(*dead_time)],
+        }) => [gain, time_constant, dead_time].map(|value| number(*value).into()),
         Ok(Model::Integrating { gain, dead_time }) => [
-            format!("{} 1/s", number(*gain)),
-            "integrator".to_owned(),
-            number(*dead_time),
+            format!("{} 1/s", number(*gain)).into(),
+            "integrator".into(),
+            number(*dead_time).into(),
         ],
-        Err(_) => ["none".to_owned(), String::new(), String::new()],
+        Err(_) => ["none".into(), Message::default(), Message::default()],
     };
     for cell in cells {
         ui.label(tr(cell));

@@ -53,15 +53,15 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
                 continue;
             };
             let name = egui::Button::selectable(*chosen == rule.id, tr(rule.name));
-            let name = cell(ui, width, name)
-                .on_hover_text(tr(format!("{}\n{}", rule.sentence, rule.source)));
+            let name =
+                cell(ui, width, name).on_hover_text(tr(msg!("{}\n{}", rule.sentence, rule.source)));
             if name.clicked() {
                 rule.id.clone_into(chosen);
             }
             match &report.outcome {
                 Ok(found) => cells_ui(ui, found),
                 Err(error) => {
-                    ui.label(tr("none")).on_hover_text(tr(error.to_string()));
+                    ui.label(tr("none")).on_hover_text(tr(Message::from(error)));
                 }
             }
             ui.end_row();
@@ -72,14 +72,14 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
          integral of |y| over {} s after a step of 1 at the plant's input.", number(seen.report.horizon))));
     for report in &seen.report.rules {
         if let (Ok(rule), Err(error)) = (rule(&report.rule), &report.outcome) {
-            ui.small(format!("{}: {}.", tr(rule.name), tr(error.to_string())));
+            ui.small(format!("{}: {}.", tr(rule.name), tr(Message::from(error))));
         }
     }
 }
 
 fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
     let pid = &found.pid;
-    ui.label(tr(number(pid.gain)));
+    ui.label(tr_number(number(pid.gain)));
     ui.label(tr(maybe(pid.integral_time, "-")));
     let derivative = (pid.derivative_time > 0.0).then_some(pid.derivative_time);
     ui.label(tr(maybe(derivative, "-")));
@@ -89,9 +89,9 @@ fn cells_ui(ui: &mut egui::Ui, found: &LoopReport) {
     };
     ui.label(tr_number(format!("{:.2}", margins.max_sensitivity)));
     let phase = margins.phase_margin.map(f64::to_degrees);
-    ui.label(tr(
-        phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}"))
+    ui.label(tr_number(
+        phase.map_or_else(|| "-".to_owned(), |p| format!("{p:.1}")),
     ));
     ui.label(format!("{:.0}", 100.0 * found.set_point.overshoot));
-    ui.label(tr(number(found.load.iae)));
+    ui.label(tr_number(number(found.load.iae)));
 }

@@ -96,7 +96,7 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
                 .style(LineStyle::dashed_loose())
                 .allow_band(false),
         );
-        let mut mark = |name: &str, at: [f64; 2], color, shape| {
+        let mut mark = |name: &'static str, at: [f64; 2], color, shape| {
             plot.points(
                 Points::new(tr(name), curve(&[at]))
                     .color(color)
@@ -133,14 +133,15 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
     let found = &seen.report.ultimate;
     let heads = ["", "Ku", "error", "Tu [s]", "error"];
     table(ui, "ultimate table", &heads, |ui| {
-        let mut row = |name: &str, u: Option<Ultimate>, gain: Option<f64>, period: Option<f64>| {
-            ui.label(tr(name));
-            ui.label(tr(maybe(u.map(|u| u.gain), "none")));
-            ui.label(tr(error(gain)));
-            ui.label(tr(maybe(u.map(|u| u.period), "none")));
-            ui.label(tr(error(period)));
-            ui.end_row();
-        };
+        let mut row =
+            |name: &'static str, u: Option<Ultimate>, gain: Option<f64>, period: Option<f64>| {
+                ui.label(tr(name));
+                ui.label(tr(maybe(u.map(|u| u.gain), "none")));
+                ui.label(tr(error(gain)));
+                ui.label(tr(maybe(u.map(|u| u.period), "none")));
+                ui.label(tr(error(period)));
+                ui.end_row();
+            };
         row(
             "4k/(π a), eq. (9)",
             Some(found.by_relay),

@@ -70,7 +70,7 @@ impl Form {
         }
         let missing = choice.missing();
         if !missing.is_empty() {
-            let missing = missing.join(", ");
+            let missing = Message::list(", ", missing.iter().copied());
             ui.label(tr(msg!("Still to choose: {}.", missing)));
         }
         ui.horizontal_wrapped(|ui| {
@@ -154,7 +154,7 @@ impl Form {
 }
 
 /// The name of a channel, as wide as that of any other.
-fn title_ui(ui: &mut Ui, title: &str) -> egui::Response {
+fn title_ui(ui: &mut Ui, title: &'static str) -> egui::Response {
     let size = egui::vec2(TITLE_WIDTH, ui.spacing().interact_size.y);
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let title = ui.allocate_ui_with_layout(size, layout, |ui| {
@@ -165,7 +165,7 @@ fn title_ui(ui: &mut Ui, title: &str) -> egui::Response {
 }
 
 /// The name of a field, which goes to the next line as a whole.
-fn label_ui(ui: &mut Ui, name: &str) -> egui::Response {
+fn label_ui(ui: &mut Ui, name: &'static str) -> egui::Response {
     ui.add(egui::Label::new(tr(name)).extend())
 }
 
@@ -173,7 +173,10 @@ fn label_ui(ui: &mut Ui, name: &str) -> egui::Response {
 fn name_of(column: &FoundColumn) -> Message {
     let mut name = Message::name(&column.name);
     if column.address != column.name {
-        let place = Message::words(column.address.clone());
+        let place = match column.address.strip_prefix("column ") {
+            Some(place) => msg!("column {}", place.to_owned()),
+            None => Message::name(&column.address),
+        };
         name = if name.is_empty() {
             place
         } else {

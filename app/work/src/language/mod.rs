@@ -6,16 +6,18 @@
 
 mod catalogue;
 mod number;
+mod plain;
 mod tied;
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use hysteron_core::message::Message;
 
-pub use catalogue::{Catalogue, is_plain};
+pub use catalogue::Catalogue;
 pub use number::typed_in;
+pub use plain::is_plain;
 use tied::{TIE, tied};
 
 /// A language that the app speaks.
@@ -106,16 +108,12 @@ fn system_locale() -> Option<String> {
     web_sys::window()?.navigator().language()
 }
 
-/// Sentences that are remembered; numbers in them change from frame to frame.
-const REMEMBERED: usize = 2048;
-
 /// Untranslated texts that are remembered.
 const MISSED: usize = 200;
 
 #[derive(Default)]
 struct Speaker {
     catalogue: Option<Catalogue>,
-    said: HashMap<String, String>,
     missed: BTreeSet<String>,
 }
 
@@ -140,76 +138,50 @@ pub fn speak(language: Language) {
 /// A text of the interface in the language that is spoken: the English one where it has no translation. Its numbers
 /// stay on a line with their units.
 pub fn tr<'a>(text: impl Into<Said<'a>>) -> String {
-    let (text, language) = (text.into(), spoken());
-    if language == Language::English {
-        return tied(text.english());
-    }
-    SPEAKER.with_borrow_mut(|speaker| match text {
-        Said::Text(text) => speaker.say(language, &text),
-        Said::Message(message) => speaker.say_message(language, &message),
-    })
-}
-
-/// What is said, in English.
-#[derive(Debug)]
-pub enum Said<'a> {
-    /// As a text.
-    Text(Cow<'a, str>),
-    /// As words and their values.
-    Message(Cow<'a, Message>),
-}
-
-impl Said<'_> {
-    fn english(self) -> String {
-        match self {
-            Self::Text(text) => text.into_owned(),
-            Self::Message(message) => message.to_string(),
+    let Said(message) = text.into();
+    match spoken() {
+        Language::English => tied(message.to_string()),
+        language @ Language::German => {
+            SPEAKER.with_borrow_mut(|speaker| speaker.say(language, &message))
         }
     }
 }
 
-impl<'a> From<&'a str> for Said<'a> {
-    fn from(text: &'a str) -> Self {
-        Self::Text(text.into())
+/// What is said: a message, or a literal, which is one without values. What is put together as the program runs is no
+/// literal, so that no text is looked up that no one could have translated.
+#[derive(Debug)]
+pub struct Said<'a>(Cow<'a, Message>);
+
+impl From<&'static str> for Said<'_> {
+    fn from(text: &'static str) -> Self {
+        Message::from(text).into()
     }
 }
 
-impl<'a> From<&&'a str> for Said<'a> {
-    fn from(text: &&'a str) -> Self {
-        Self::Text((*text).into())
-    }
-}
-
-impl<'a> From<&'a String> for Said<'a> {
-    fn from(text: &'a String) -> Self {
-        Self::Text(text.into())
-    }
-}
-
-impl From<String> for Said<'_> {
-    fn from(text: String) -> Self {
-        Self::Text(text.into())
+impl From<&&'static str> for Said<'_> {
+    fn from(text: &&'static str) -> Self {
+        Message::from(text).into()
     }
 }
 
 impl From<Message> for Said<'_> {
     fn from(message: Message) -> Self {
-        Self::Message(Cow::Owned(message))
+        Self(Cow::Owned(message))
     }
 }
 
 impl<'a> From<&'a Message> for Said<'a> {
     fn from(message: &'a Message) -> Self {
-        Self::Message(Cow::Borrowed(message))
+        Self(Cow::Borrowed(message))
     }
 }
 
 /// The same with usual spaces, for a terminal and for files, where nothing breaks a line but who writes it.
 pub fn say<'a>(text: impl Into<Said<'a>>) -> String {
-    let text = text.into();
+    let Said(message) = text.into();
     match spoken() {
-        Language::English => text.english(),
-        Language::German => tr(text).replace(TIE, " "),
+        Language::English => message.to_string(),
+        Language::German => tr(Said(message)).replace(TIE, " "),
     }
 }
 
@@ -241,29 +213,12 @@ pub fn missed() -> Vec<String> {
 }
 
 impl Speaker {
-    fn say_message(&mut self, language: Language, message: &Message) -> String {
+    fn say(&mut self, language: Language, message: &Message) -> String {
         let catalogue = self.catalogue.get_or_insert_with(|| language.catalogue());
         let said = catalogue.say(message);
         if !said.complete && self.missed.len() < MISSED {
             self.missed.insert(message.to_string());
         }
         tied(said.text)
-    }
-
-    fn say(&mut self, language: Language, text: &str) -> String {
-        if let Some(said) = self.said.get(text) {
-            return said.clone();
-        }
-        let catalogue = self.catalogue.get_or_insert_with(|| language.catalogue());
-        let said = catalogue.translate(text);
-        if !said.complete && self.missed.len() < MISSED {
-            self.missed.insert(text.to_owned());
-        }
-        if self.said.len() >= REMEMBERED {
-            self.said.clear();
-        }
-        let tied = tied(said.text);
-        self.said.insert(text.to_owned(), tied.clone());
-        tied
     }
 }

@@ -14,6 +14,7 @@ use crate::measurement::Kind;
 use crate::message::{Message, fixed};
 use crate::msg;
 use crate::order::median;
+use crate::uncertain::{brief, digits};
 
 /// Share of the motion that the best of these subsets leaves; all of it where there is none.
 pub(super) fn left(bench: &Bench, tried: &[Tried]) -> f64 {
@@ -241,8 +242,8 @@ fn not_told(signals: &Signals, bench: &Bench) -> Option<Message> {
         msg!(
             "This record does not tell the inertia ({} with an error of {}): the speed hardly changes but for its \
              noise. It tells friction. Let the input jump, and sample the run-up.",
-            format!("{:.2e}", inertia),
-            format!("{:.1e}", error)
+            brief(inertia),
+            digits(error, 2)
         )
     })
 }

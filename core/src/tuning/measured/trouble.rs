@@ -7,7 +7,7 @@ use super::minimum_time::minimum_time;
 use super::number::number;
 use super::record::Record;
 use crate::controller::{Logged, controller};
-use crate::count::counted;
+use crate::counted;
 use crate::measurement::Kind;
 use crate::msg;
 use crate::order::{distinct, median, range};
@@ -128,7 +128,7 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             msg!(
                 "The relay flickers {} in {} half periods: the noise ({}) is of the size of the hysteresis ({}). \
                  Three times the noise as hysteresis, or a filter, ends it.",
-                counted(cycle.flicker, "time"),
+                counted!(cycle.flicker, "1 time", "{} times"),
                 n(half_periods),
                 noise,
                 hysteresis
@@ -333,8 +333,8 @@ fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
     (rounds <= WHOLE_PERIODS).then(|| {
         let (seconds, switched, went) = (
             n(e.record.span()),
-            counted(switched, "time"),
-            counted(rounds, "time"),
+            counted!(switched, "1 time", "{} times"),
+            counted!(rounds, "1 time", "{} times"),
         );
         let text = if e.told {
             msg!("In {} s the input switches {} and the output goes round {}: there is no cycle to \

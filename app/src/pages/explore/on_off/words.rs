@@ -86,18 +86,14 @@ fn exactly(input: &OnOffInput, data: &OnOffData) -> Message {
     }
     let parts = cycle.positions.iter();
     let parts = parts.map(|(position, time)| {
-        let words = format!("{} {{}}", name(input, *position));
-        Message::Words(words.into(), vec![quantity(*time, "s").into()])
+        let time = quantity(*time, "s");
+        match position {
+            Position::Up if one_sided(input) => msg!("on {}", time),
+            Position::Down if one_sided(input) => msg!("off {}", time),
+            other => other.lasting(time),
+        }
     });
     msg!("Exact cycle: {}.", Message::list(", ", parts))
-}
-
-fn name(input: &OnOffInput, position: Position) -> &'static str {
-    match position {
-        Position::Up if one_sided(input) => "on",
-        Position::Down if one_sided(input) => "off",
-        other => other.name(),
-    }
 }
 
 /// What the describing function says beside it.

@@ -149,7 +149,7 @@ impl Controls {
         place: Place,
         factor: f64,
         far: f64,
-        name: &str,
+        name: &'static str,
     ) -> egui::Response {
         let (usual, most) = self.usual_and_most(place, factor, far);
         slider(ui, place(set), usual, factor, 0.0..=most, name)
@@ -163,7 +163,7 @@ impl Controls {
         place: Place,
         factor: f64,
         far: f64,
-        name: &str,
+        name: &'static str,
     ) -> egui::Response {
         let (usual, most) = self.usual_and_most(place, factor, far);
         slider(ui, place(set), usual, factor, LEAST * most..=most, name)

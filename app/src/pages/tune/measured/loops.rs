@@ -53,7 +53,7 @@ pub fn ui(
 
 fn response_ui(
     ui: &mut egui::Ui,
-    [id, axis]: [&str; 2],
+    [id, axis]: [&'static str; 2],
     with: &Response,
     without: Option<&[f64]>,
     height: f32,

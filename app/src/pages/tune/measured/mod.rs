@@ -112,7 +112,11 @@ impl Measured {
                     reading: arrival.reading,
                 }),
                 Err(error) => {
-                    self.message = Some(msg!("{}: cannot be read ({})", arrival.name, error));
+                    self.message = Some(msg!(
+                        "{}: cannot be read ({})",
+                        Message::name(arrival.name),
+                        Message::name(error)
+                    ));
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! The point of the Nyquist curve with what is not known of it, and the record.
 
+use hysteron_core::msg;
 use std::f64::consts::TAU;
 
 use egui_plot::{Line, MarkerShape, PlotPoint, Points, Text};
@@ -163,8 +164,8 @@ pub fn record_ui(ui: &mut egui::Ui, record: &Record, tuning: &MeasuredTuning, he
         ("input u, scaled to the output", theme::INPUT, Shape::Line),
     ];
     caption_ui(ui, "", &curves);
-    let axis = format!("output y [{}]", tuning.output_unit);
-    plot("measured test", height - CAPTION, "time [s]", &axis).show(ui, |plot| {
+    let axis = msg!("{} [{}]", "output y", &tuning.output_unit);
+    plot("measured test", height - CAPTION, "time [s]", axis).show(ui, |plot| {
         plot.line(
             Line::new(tr("input u, scaled to the output"), curve(&input))
                 .color(theme::INPUT)

@@ -61,7 +61,7 @@ impl Measured {
 
     fn files_ui(&mut self, ui: &mut egui::Ui, desk: &mut Desk) {
         if let Some(file) = &self.file {
-            ui.strong(tr(&file.name));
+            ui.strong(&file.name);
         }
         ui.horizontal_wrapped(|ui| {
             if ui
@@ -165,7 +165,7 @@ impl Measured {
 }
 
 /// A number with its name.
-fn number_ui(ui: &mut egui::Ui, name: &str, value: &mut f64, unit: &str) {
+fn number_ui(ui: &mut egui::Ui, name: &'static str, value: &mut f64, unit: &str) {
     let label = ui.label(tr(name));
     let speed = 0.01 * value.abs().max(0.01);
     let field = Typed::new(*value, unit, -LARGEST..=LARGEST, DECIMALS);
@@ -175,7 +175,7 @@ fn number_ui(ui: &mut egui::Ui, name: &str, value: &mut f64, unit: &str) {
 }
 
 /// A number that may be left to the page.
-fn optional_ui(ui: &mut egui::Ui, name: &str, value: &mut Option<f64>, normal: f64) {
+fn optional_ui(ui: &mut egui::Ui, name: &'static str, value: &mut Option<f64>, normal: f64) {
     ui.horizontal(|ui| {
         let mut given = value.is_some();
         if ui.checkbox(&mut given, tr(name)).changed() {

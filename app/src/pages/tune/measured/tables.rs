@@ -111,20 +111,21 @@ pub fn gains_ui(ui: &mut egui::Ui, tuning: &MeasuredTuning, chosen: &mut Option<
 
 fn gains_row_ui(ui: &mut egui::Ui, gains: &TunedGains, model: bool, chosen: &mut Option<String>) {
     let key = key(gains);
-    let name = format!("{} {}", gains.name, gains.controller.to_uppercase());
+    let controller = gains.controller.to_uppercase();
+    let name = Message::words(format!("{} {controller}", gains.name));
     if ui
         .selectable_label(chosen.as_ref() == Some(&key), tr(name))
         .clicked()
     {
         *chosen = Some(key);
     }
-    ui.label(tr(number(gains.kp)));
+    ui.label(tr_number(number(gains.kp)));
     if matches!(gains.form, Form::Ideal | Form::Series) {
         ui.label(tr(maybe(gains.ti, "-")));
-        ui.label(tr(number(gains.td)));
+        ui.label(tr_number(number(gains.td)));
     } else {
-        ui.label(tr(number(gains.ki)));
-        ui.label(tr(number(gains.kd)));
+        ui.label(tr_number(number(gains.ki)));
+        ui.label(tr_number(number(gains.kd)));
     }
     if model && !gains.stable {
         ui.label(tr("unstable"));
