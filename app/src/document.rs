@@ -109,7 +109,7 @@ impl Document {
         let Some(index) = pages.iter().position(|p| p.id == self.page) else {
             let known: Vec<&str> = pages.iter().map(|p| p.id).collect();
             return Err(msg!(
-                "This link is about a page that does not exist; there are {}.",
+                "This link leads to a page that does not exist; the pages are {}.",
                 known.join(", ")
             ));
         };
@@ -119,7 +119,7 @@ impl Document {
             .map_err(|e| msg!("This loop is not possible: {}.", e))?;
         let lesson: Option<String> = parsed(&self.settings[LESSON])?;
         if lesson.as_deref().is_some_and(|id| find(id).is_none()) {
-            return Err("This link is about a lesson that does not exist.".into());
+            return Err("This link leads to a lesson that does not exist.".into());
         }
         let zooms = pages
             .iter()

@@ -103,7 +103,7 @@ fn the_way_goes_back_and_forth_and_shows_the_step_before() {
     let after = error(&harness);
     assert!(after < 1.2 && before > 2.0);
     click(&mut harness, "Where it fails");
-    press(&mut harness, "Beside the step before");
+    press(&mut harness, "Show the previous step too");
     picture(&mut harness, "compare_before_and_after");
     click(&mut harness, "Take back Coulomb friction");
     assert_eq!(error(&harness), before);
@@ -152,10 +152,12 @@ fn the_finding_that_is_shaded_lies_in_the_plots() {
         assert!(said.contains(&words), "{said:#?}");
     };
     // Seconds after the first periods.
-    let first = "48\u{a0}% of the position error comes from 8\u{a0}% of the samples, those within 15.2\u{a0}ms";
+    let first =
+        "48\u{a0}% of the position error comes from the 8\u{a0}% of samples within 15.2\u{a0}ms";
     harness.get_by_label_contains(first);
     marked(&harness, "48");
-    let other = "41\u{a0}% of the velocity error comes from 10\u{a0}% of the samples, those between 1.80\u{a0}s";
+    let other =
+        "41\u{a0}% of the velocity error comes from the 10\u{a0}% of samples between 1.80\u{a0}s";
     harness.get_by_label_contains(other).click();
     finish(&mut harness);
     marked(&harness, "41");
@@ -314,7 +316,7 @@ fn the_hint_follows_what_is_open_and_what_was_found() {
         link.as_str()
             .is_some_and(|l| l.contains("compare.before=true"))
     );
-    says(&harness, "A drive that answers late");
+    says(&harness, "A drive that responds late");
     click(&mut harness, "Try it");
     assert_eq!(state(&harness)["file"], "drive-12");
     says(&harness, "helps most: add it");
@@ -332,7 +334,7 @@ fn the_hint_follows_what_is_open_and_what_was_found() {
     assert_eq!(state(&harness)["page"], "explore");
     // Nothing to find, but elsewhere.
     let harness = opened("drive-01", WIDE);
-    says(&harness, "A drive that answers late");
+    says(&harness, "A drive that responds late");
 }
 
 #[test]

@@ -292,7 +292,7 @@ fn what_compare_shows_comes_back_in_another_window() {
     for (label, parts) in [
         ("Where it fails", &["compare.look=places"][..]),
         (
-            "Beside the step before",
+            "Show the previous step too",
             &["compare.before=true", "compare.look=places"],
         ),
         (

@@ -143,7 +143,7 @@ fn a_file_of_matlab_is_mapped_diagnosed_and_opened_again() {
     harness.input_mut().dropped_files.push(file);
     finish_when(&mut harness, "form", |s| s["mapping"].is_object());
     harness.get_by_label("Which column is what?");
-    harness.get_by_label("A file of MATLAB does not say what its columns are.");
+    harness.get_by_label("A MATLAB file does not say what its columns are.");
     assert_eq!(
         missing(&harness),
         json!(["Time or Sampling period", "Input", "Position or Velocity"])

@@ -124,7 +124,7 @@ fn a_model_from_a_file_is_where_compare_begins() {
     let verdict = good["verdict"].as_str().expect("a verdict");
     assert!(verdict.contains("Nothing is missing"), "{verdict}");
     harness.get_by_label("Begins with rig.toml");
-    harness.get_by_label("Forget it").click();
+    harness.get_by_label("Discard it").click();
     harness.step();
     finish(&mut harness);
     assert!(error(&harness) > 2.0, "the baseline again");
@@ -189,7 +189,7 @@ fn stop_looking(harness: &mut App) {
     wait(harness, "search", |s| s["looks"] == true);
     assert_eq!(
         state(harness)["hint"],
-        "Nothing in the library fits: a formula is being looked for."
+        "Nothing in the library fits: searching for a formula."
     );
     harness.step();
     harness.get_by_label("Cancel").click();

@@ -218,7 +218,7 @@ fn the_text_tells_the_story_in_80_columns() {
         "71 % of the error lies within 3 ms",
         "coulomb_friction          1.02     -5210.0  helps",
         "same as constant_load",
-        "too little to add it",
+        "too little to be added",
         "+ Coulomb friction",
         "motor inertia",
         "friction level",
@@ -446,7 +446,7 @@ fn the_gap_in_words() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.starts_with("drive-03.csv: the gap is 19."), "{text}");
     for part in [
-        "if the motor stood in its middle at the start",
+        "if the motor started in its middle",
         "95 % interval",
         "pushed one way at most",
     ] {

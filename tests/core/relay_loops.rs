@@ -81,7 +81,7 @@ fn check_cycle(d: &Diagnosis, most: f64) {
         "{error:?}: {}",
         d.verdict.text
     );
-    let said = "Run free in its own relay loop, ";
+    let said = "Left to run in its own relay loop, ";
     assert!(
         d.verdict.text.to_string().contains(said),
         "{}",

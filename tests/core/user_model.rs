@@ -130,7 +130,10 @@ fn a_value_that_the_data_overrule_is_said_though_all_is_explained() {
     );
     assert!((o.found / 8.8e-4 - 1.0).abs() < 1e-3, "{o:?}");
     assert!(
-        d.verdict.text.to_string().starts_with("The model holds J1"),
+        d.verdict
+            .text
+            .to_string()
+            .starts_with("The model is given J1"),
         "{}",
         d.verdict.text
     );
@@ -159,8 +162,8 @@ fn a_value_overruled_beside_what_is_missing_is_said_first_and_last() {
     let text = &d.verdict.text;
     assert!(
         text.to_string()
-            .starts_with("The data overrule what was given: J1 is")
-            || text.to_string().starts_with("The model holds J1"),
+            .starts_with("The data contradict what was given: J1 is")
+            || text.to_string().starts_with("The model is given J1"),
         "{text}"
     );
     assert!(

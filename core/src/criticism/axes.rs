@@ -336,7 +336,7 @@ const SAME: f64 = 1e-4;
 
 fn span_after(from: f64, to: f64, what: &'static str) -> Message {
     if to <= 0.0 {
-        msg!("in the first sample after {}", what)
+        msg!("right after {}", what)
     } else if from <= 0.0 {
         msg!("within {} after {}", seconds(to), what)
     } else {
@@ -414,7 +414,7 @@ mod tests {
             span_after(10.001, 10.0043, "it"),
             "from 10.0010 s to 10.0043 s after it"
         );
-        assert_eq!(span_after(0.0, 0.0, "it"), "in the first sample after it");
+        assert_eq!(span_after(0.0, 0.0, "it"), "right after it");
         assert_eq!(
             span_after(0.8e-3, 2.2e-3, "it"),
             "from 800 µs to 2.2 ms after it"

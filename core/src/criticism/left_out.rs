@@ -17,9 +17,11 @@ pub(super) fn add_left_out(verdict: &mut Verdict, whole: &Data) {
 fn add_glitches(verdict: &mut Verdict, glitches: usize) {
     let said = match glitches {
         0 => return,
-        1 => "One value stood alone, far off its neighbours, and was left out: a glitch of the sensor.".into(),
+        1 => "One outlier, far from its neighbours, was left out as a sensor glitch.".into(),
         many => msg!(
-            "{} values stood alone, far off their neighbours, and were left out: glitches of the sensor.", many),
+            "{} outliers, far from their neighbours, were left out as sensor glitches.",
+            many
+        ),
     };
     verdict.text.add(said);
 }
@@ -28,9 +30,9 @@ fn add_glitches(verdict: &mut Verdict, glitches: usize) {
 fn add_pauses(verdict: &mut Verdict, pauses: usize) {
     let said = match pauses {
         0 => return,
-        1 => "Rows are missing in one place, or two runs are joined there: the model begins anew after it.".into(),
+        1 => "Rows are missing in one place, or two runs are joined there: the model starts afresh after it.".into(),
         many => msg!(
-            "Rows are missing in {} places, or runs are joined there: the model begins anew after each.", many),
+            "Rows are missing in {} places, or runs are joined there: the model starts afresh after each.", many),
     };
     verdict.text.add(said);
 }
@@ -39,7 +41,7 @@ fn add_pauses(verdict: &mut Verdict, pauses: usize) {
 fn add_held(verdict: &mut Verdict, data: &Data) {
     for output in data.outputs.iter().filter(|o| o.is_held()) {
         verdict.text.add(msg!(
-            "The {} stays as it is between {} readings: only these were used.",
+            "The {} holds its value between {} readings: only these were used.",
             signal_name(data.kind, output),
             output.telling(0, data.len())
         ));

@@ -117,7 +117,7 @@ fn concentration(
         share_of_error,
         share_of_samples,
         text: msg!(
-            "{} % of the {} comes from {} % of the samples, those {}.",
+            "{} % of the {} comes from the {} % of samples {}.",
             fixed(100.0 * share_of_error, 0),
             error_name(data.kind, output),
             fixed(100.0 * share_of_samples, 0),
@@ -320,9 +320,10 @@ mod tests {
         assert_eq!((finding.from, finding.to), (-1.0, -1.0));
         assert!((finding.share_of_samples - 0.5).abs() < 0.01, "{finding:?}");
         assert!(
-            finding.text.to_string().contains(
-                "comes from 50 % of the samples, those where the acceleration is negative."
-            ),
+            finding
+                .text
+                .to_string()
+                .contains("comes from the 50 % of samples where the acceleration is negative."),
             "{}",
             finding.text
         );

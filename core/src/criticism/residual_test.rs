@@ -75,12 +75,13 @@ fn sentence(
     let share = share(correlation);
     match (kind, passed) {
         (ResidualTestKind::Whiteness, true) => msg!(
-            "The residual of the {} is white: no correlation beyond what chance leaves, {}.",
+            "The residual of the {} is white: no correlation beyond the {} that chance allows.",
             name,
             fixed(bound, 3)
         ),
         (ResidualTestKind::Whiteness, false) => msg!(
-            "The residual of the {} is not white: {} apart it correlates by {}, {} of its square; chance leaves {}.",
+            "The residual of the {} is not white: at a lag of {} its correlation is {} ({} of its square); chance \
+             allows {}.",
             name,
             lag,
             fixed(correlation, 3),
@@ -88,13 +89,13 @@ fn sentence(
             fixed(bound, 3)
         ),
         (ResidualTestKind::InputCorrelation, true) => msg!(
-            "The residual of the {} does not follow the input: no correlation beyond what chance leaves, {}.",
+            "The residual of the {} does not follow the input: no correlation beyond the {} that chance allows.",
             name,
             fixed(bound, 3)
         ),
         (ResidualTestKind::InputCorrelation, false) => msg!(
-            "The residual of the {} still follows the input: {} later it correlates by {}, {} of its square; chance \
-             leaves {}.",
+            "The residual of the {} still follows the input: {} later their correlation is {} ({} of its square); \
+             chance allows {}.",
             name,
             lag,
             fixed(correlation, 3),

@@ -97,7 +97,7 @@ fn contradiction(
     let mut text = Message::default();
     for c in &contradicted {
         text.add(msg!(
-            "The model holds {} = {}, but these data want {}.",
+            "The model is given {} = {}, but these data say {}.",
             Message::name(&c.name),
             in_unit(digits(c.held, 5), &c.unit),
             with_error(c.wanted, c.std_error, &c.unit)
@@ -107,13 +107,13 @@ fn contradiction(
     let released = contradicted.first().map_or(error, |c| c.error);
     if released < error {
         text.add(msg!(
-            "With the known values released the error falls from {} to {} times the noise: correct \
-             or free them before looking for effects.",
+            "With the given values freed, the error falls from {} to {} times the noise: correct or free them before \
+             looking for effects.",
             fixed(error, 2),
             fixed(released, 2)
         ));
     } else {
-        text.add("Correct or free what is known before looking for effects.");
+        text.add("Correct or free the given values before looking for effects.");
     }
     Verdict {
         missing,
@@ -140,7 +140,7 @@ pub(super) fn add_overruled(verdict: &mut Verdict, overruled: Vec<Overruled>) {
         let mut text = Message::list(" ", new.iter().map(|o| o.words()));
         text.add(std::mem::take(&mut verdict.text));
         text.add(msg!(
-            "All this holds with another value than the one that was given: {}.",
+            "All this holds with a value other than the one given: {}.",
             names
         ));
         verdict.text = text;
@@ -164,7 +164,7 @@ pub(super) fn add_rest(
     let share = 100.0 * error / first;
     if rest == Rest::NoiseWithMemory {
         verdict.text.add(msg!(
-            "This noise remembers for some samples, as that of a sensor with a filter does: it is {} times what \
+            "This noise is correlated over a few samples, like that of a sensor with a filter: it is {} times what \
              neighbouring samples show, and depends neither on the motion nor on the input.",
             fixed(error, 2)
         ));
@@ -175,26 +175,29 @@ pub(super) fn add_rest(
         if rest == Rest::RandomForces {
             verdict.text.restate(if nothing {
                 msg!(
-                    "Nothing is missing: what the model leaves is noise, and what small random forces leave, such as \
-                     those of a controller that is faster than the record: {} times the noise.", fixed(error, 2))
+                    "Nothing is missing: what the model leaves is noise and the effect of small random forces, such \
+                     as those of a controller that is faster than the record: {} times the noise.", fixed(error, 2))
             } else {
                 msg!(
-                    "With that, what is left is noise, and what small random forces leave, such as those of a \
+                    "With that, what is left is noise and the effect of small random forces, such as those of a \
                      controller that is faster than the record: {} times the noise.", fixed(error, 2))
             });
             verdict.text.add(
-                "It goes on a random walk, and depends neither on the motion nor on the input.",
+                "It wanders like a random walk, and depends neither on the motion nor on the input.",
             );
             return;
         }
         verdict.text.restate(if nothing {
             msg!(
-                "Nothing is missing: what the model leaves is noise but for a trifle, or for short stretches: the \
-                 error is {} times the noise, {} % of what it was at first.", fixed(error, 2), fixed(share, 2))
+                "Nothing is missing: what the model leaves is noise, apart from a small remainder or a few short \
+                 stretches: the error is {} times the noise, {} % of what it was at first.",
+                fixed(error, 2),
+                fixed(share, 2)
+            )
         } else {
             msg!(
-                "With that, what is left is noise but for a trifle, or for short stretches: the error is {} times \
-                 the noise, {} % of what it was at first.", fixed(error, 2), fixed(share, 2))
+                "With that, what is left is noise, apart from a small remainder or a few short stretches: the error \
+                 is {} times the noise, {} % of what it was at first.", fixed(error, 2), fixed(share, 2))
         });
         return;
     }
@@ -217,8 +220,8 @@ pub(super) fn add_rest(
 /// Says by what models were compared where the surroundings of a process wander.
 pub(super) fn add_wander(verdict: &mut Verdict) {
     verdict.text.add(
-        "Most of what any model leaves wanders slowly, as if the surroundings changed: each model is judged by how \
-         well it foretells a sample from those before it.",
+        "Most of what any model leaves drifts slowly, as if the surroundings changed: so each model is judged by how \
+         well it predicts a sample from those before it.",
     );
 }
 
@@ -255,12 +258,12 @@ pub(super) fn add_relay_loop(
             let first = first.filter(|_| !verdict.missing.is_empty());
             verdict.text.add(match first.map(cycle_words) {
                 None => msg!(
-                    "Run free in its own relay loop, the model's period is off by {} % and its amplitude by {} %.",
+                    "Left to run in its own relay loop, the model is off by {} % in period and {} % in amplitude.",
                     period,
                     amplitude
                 ),
                 Some(Some([first, swing])) => msg!(
-                    "Run free in its own relay loop, the model's period is off by {} % and its amplitude by {} % \
+                    "Left to run in its own relay loop, the model is off by {} % in period and {} % in amplitude \
                      (without what was found: {} % and {} %).",
                     period,
                     amplitude,
@@ -268,8 +271,8 @@ pub(super) fn add_relay_loop(
                     swing
                 ),
                 Some(None) => msg!(
-                    "Run free in its own relay loop, the model's period is off by {} % and its amplitude by {} % \
-                     (without what was found there is no cycle).",
+                    "Left to run in its own relay loop, the model is off by {} % in period and {} % in amplitude \
+                     (without what was found it does not oscillate).",
                     period,
                     amplitude
                 ),
@@ -277,7 +280,7 @@ pub(super) fn add_relay_loop(
         }
         None => verdict
             .text
-            .add("Run free in its own relay loop, the model comes to no cycle."),
+            .add("Left to run in its own relay loop, the model does not oscillate."),
     }
 }
 
@@ -293,16 +296,17 @@ pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
     let [error, before] = dry.errors.map(|error| fixed(error, 2));
     verdict.text.add(if dry.class.len() > 1 {
         msg!(
-            "The friction may be dry as well: with {} of Coulomb friction in the place of the viscous friction, both \
-             halves of the record are left with {} times the noise instead of {}, too small a difference to count.",
+            "The friction could just as well be dry: with {} of Coulomb friction in place of the viscous friction, \
+             the error over both halves of the record is {} times the noise instead of {}, too small a difference to \
+             count.",
             level,
             error,
             before
         )
     } else {
         msg!(
-            "The friction is dry: with {} of Coulomb friction in the place of the viscous friction, both halves of \
-             the record are left with {} times the noise instead of {}, too small a difference to count.",
+            "The friction is dry: with {} of Coulomb friction in place of the viscous friction, the error over both \
+             halves of the record is {} times the noise instead of {}, too small a difference to count.",
             level,
             error,
             before
@@ -311,27 +315,28 @@ pub(super) fn add_dry_friction(verdict: &mut Verdict, dry: &InsteadOfViscous) {
     let [with_dry, with_viscous] = dry.in_loop.map(cycle_words);
     verdict.text.add(match (with_dry, with_viscous) {
         (Some([period, swing]), Some([other, old])) => msg!(
-            "Run free in its own relay loop, the period is off by {} % and the amplitude by {} %; with viscous \
-             friction the period is off by {} % and the amplitude by {} %.",
+            "Left to run in its own relay loop, the model is then off by {} % in period and {} % in amplitude; with \
+             viscous friction, by {} % and {} %.",
             period,
             swing,
             other,
             old
         ),
         (Some([period, swing]), None) => msg!(
-            "Run free in its own relay loop, the period is off by {} % and the amplitude by {} %; with viscous \
-             friction there is no cycle.",
+            "Left to run in its own relay loop, the model is then off by {} % in period and {} % in amplitude; with \
+             viscous friction it does not oscillate.",
             period,
             swing
         ),
         (None, Some([period, swing])) => msg!(
-            "Run free in its own relay loop, there is no cycle; with viscous friction the period is off by {} % and \
-             the amplitude by {} %.",
+            "Left to run in its own relay loop, the model then does not oscillate; with viscous friction it is off by \
+             {} % in period and {} % in amplitude.",
             period,
             swing
         ),
         (None, None) =>
-            "Run free in its own relay loop, there is no cycle; with viscous friction there is no cycle.".into(),
+            "Left to run in its own relay loop, the model then does not oscillate, nor does it with \
+             viscous friction.".into(),
     });
     verdict.missing.push(dry.class.clone());
     if dry.class.len() > 1 {
@@ -374,8 +379,8 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheW
     let reason = match part.refused {
         Refused::LeavesMore => {
             verdict.text.add(msg!(
-                "Part of the way, and not named since it leaves more than it explains: {}, with which the error is \
-                 {} times the noise.",
+                "Part of the way, but not named as missing, since it leaves more than it explains: {}, with which the \
+                 error is {} times the noise.",
                 listed,
                 fixed(error, 2)
             ));
@@ -383,10 +388,10 @@ pub(super) fn add_part_of_the_way(verdict: &mut Verdict, part: Option<PartOfTheW
             return;
         }
         Refused::WithoutMarks => {
-            "It is not named, since what sets it apart from others does not stand out in this record."
+            "It is not named, since this record hardly shows what sets it apart from others."
         }
-        Refused::MayBeNothing => "It is not named, since by its error its size may be 0.",
-        Refused::Trifle => "It is not named, since it would be a trifle of the input.",
+        Refused::MayBeNothing => "It is not named, since within its error its size may be 0.",
+        Refused::Trifle => "It is not named, since it would be a negligible part of the input.",
         Refused::Other => "",
     };
     verdict.text.add(
@@ -451,7 +456,7 @@ pub(super) fn add_idle(verdict: &mut Verdict, idle: &[EffectId], unsure: &[Effec
     }
     if !unsure.is_empty() {
         verdict.text.add(msg!(
-            "In the model, and the error is lower with it, but not beyond chance: {}.",
+            "In the model, but lowering the error by no more than chance would: {}.",
             names(unsure, ", ")
         ));
     }
@@ -484,8 +489,8 @@ const OTHER_EXPERIMENT: &str = "Repeat the measurement with another input, of ot
     what acts alike in one motion differs in another.";
 
 /// For what is one constant while a drive turns one way.
-const BOTH_WAYS: &str = "Let the drive turn both ways, and rest between: dry friction then changes its sign with the \
-    motion, a dead zone with the input, and a constant load never.";
+const BOTH_WAYS: &str = "Let the drive turn both ways and rest in between: dry friction then changes sign with the \
+                         motion, a dead zone with the input, and a constant load never.";
 
 fn names(ids: &[EffectId], between: &'static str) -> Message {
     Message::list(between, ids.iter().map(|id| name_of(*id)))

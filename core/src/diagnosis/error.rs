@@ -56,8 +56,8 @@ impl CriticismError {
     pub fn message(&self) -> Message {
         match self {
             Self::ConstantInput => {
-                "the input is constant over the whole file: an experiment must move it; of a step from rest, \
-                 add the row before the step, with the input as it was then"
+                "the input is constant over the whole file: an experiment must change it; for a step from rest, add \
+                 the row before the step, with the input as it was then"
                     .into()
             }
             Self::ConstantOutput { name } => msg!(

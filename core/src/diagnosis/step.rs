@@ -57,7 +57,7 @@ impl Candidate {
         } else if self.promising {
             "perhaps: chance is not ruled out"
         } else {
-            "too little to add it"
+            "too little to be added"
         }
     }
 }

@@ -56,7 +56,7 @@ impl Overruled {
             ..
         } = self;
         msg!(
-            "The data overrule what was given: {} is {} where the model has {}, {} tolerances away.",
+            "The data contradict what was given: {} is {}, while the model has {}, {} tolerances away.",
             Message::name(name),
             written_like(*found, (*given, *tolerance), unit),
             with_error(*given, *tolerance, unit),

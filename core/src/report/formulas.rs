@@ -34,7 +34,7 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
     let class = if alone {
         "the answer"
     } else {
-        "not told apart by this record"
+        "this record cannot tell them apart"
     };
     legend(
         &mut out,
@@ -50,8 +50,8 @@ pub(super) fn section(tongue: Tongue, discovery: &Discovery) -> String {
         &mut out,
         tongue,
         &picture(tongue, discovery, &fronts),
-        "Every formula that was simulated: its length in names, numbers and signs, and what it leaves of blocks that \
-         its fit did not see, in units of the noise.",
+        "Every formula that was simulated: its length in names, numbers and signs, and its error on parts of the \
+         record that it was not fitted to, in units of the noise.",
     );
     let others = fronts.into_iter().filter(|f| !f.in_class);
     let rows: Vec<Vec<Cell>> = discovery

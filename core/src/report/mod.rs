@@ -148,7 +148,7 @@ fn curves(input: &ReportInput) -> String {
         &[
             ("measured", "measured"),
             ("model", "model"),
-            ("residual", "measured less model"),
+            ("residual", "measured minus model"),
             ("noise", "twice the noise"),
         ],
     );
@@ -165,8 +165,8 @@ fn curves(input: &ReportInput) -> String {
             &input.last.step.findings,
         );
     }
-    let windows = "The model is driven by the measured input, and starts afresh from an estimated state in each short \
-                   window.";
+    let windows = "The model is driven by the measured input. In each short window it starts afresh from an estimated \
+                   state, so that small errors do not add up.";
     let _ = writeln!(out, "<p class=\"small\">{}</p>", input.tongue.page(windows));
     out
 }
@@ -228,8 +228,8 @@ fn missing(input: &ReportInput) -> String {
     let mut out = format!(
         "<p>{}</p>\n<div class=\"pair\">\n",
         tongue.page(
-            "No effect of the library explains what is left. These are forces, inputs or errors of sensors that would, \
-             estimated without a model: steps over one axis at a time, with a band of two standard errors."
+            "No effect in the library explains the rest. These are forces, inputs or sensor errors that would, \
+             estimated without a model: in steps along one axis at a time, with a band of two standard errors."
         )
     );
     for (svg, caption) in pictures::missing(tongue, &input.last.missing) {

@@ -136,7 +136,7 @@ pub(super) fn output(
         out,
         tongue,
         &chart.finish(title),
-        "In detail: the stretch of the record where the model misses most.",
+        "In detail: the stretch of the record where the model is furthest off.",
     );
     let noise = 2.0 * modelled.noise;
     let residual_axis = |values: &[f64]| {
@@ -156,7 +156,7 @@ pub(super) fn output(
         out,
         tongue,
         &chart.finish(msg!("Residual of {}", name())),
-        "The residual there, and twice the noise to both sides.",
+        "The residual there, with twice the noise on either side.",
     );
     let whole = Axis::new("time", "s", (time[0], time[n - 1]));
     let mut chart = Chart::new(tongue, WIDE, LOW, whole, residual_axis(&residual));
@@ -225,7 +225,7 @@ pub(super) fn profiles(
             pictures.push((
                 profile_chart(tongue, &name, profile, before),
                 msg!(
-                    "Residual of {} over {}: root mean square, in units of the noise.",
+                    "Residual of {} against {}: root mean square, in units of the noise.",
                     Message::name(output),
                     &name
                 ),
@@ -276,7 +276,7 @@ pub(super) fn missing(tongue: Tongue, parts: &[MissingPart]) -> Vec<(String, Mes
             chart.line(&ends.collect::<Vec<_>>(), "estimate");
             chart.level(0.0, "noise");
             let [what, axis] = [&m.what, &m.axis].map(|name| Message::words(name.clone()));
-            let title = msg!("Missing {} over {}", what, axis);
+            let title = msg!("Missing {} against {}", what, axis);
             (chart.finish(title), m.text.clone())
         })
         .collect()
@@ -309,5 +309,5 @@ fn profile_chart(
     chart.line(&other, "before");
     chart.line(&own, "residual");
     chart.level(1.0, "noise");
-    chart.finish(msg!("Residual over {}", name))
+    chart.finish(msg!("Residual against {}", name))
 }

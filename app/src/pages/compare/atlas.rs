@@ -33,7 +33,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
     ];
     let before = page.report_before().filter(|_| page.before);
     if before.is_some() {
-        curves.insert(0, ("the step before", theme::BEFORE, Shape::Line));
+        curves.insert(0, ("the previous step", theme::BEFORE, Shape::Line));
     }
     tests_ui(report, ui);
     caption_ui(ui, "Size of the residual, in units of the noise", &curves);
@@ -53,9 +53,9 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
             .get(profile.output)
             .map_or("", |c| c.title());
         let title = if many {
-            msg!("{} over {}", Message::name(name), words(&profile.axis))
+            msg!("{} against {}", Message::name(name), words(&profile.axis))
         } else {
-            msg!("over {}", words(&profile.axis))
+            msg!("against {}", words(&profile.axis))
         };
         ui.label(tr(title));
         let earlier = before.and_then(|b| twin(b, profile));
@@ -65,7 +65,7 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui) {
 
 /// What to make of a test that fails although the verdict says noise.
 const SMALL: &str = "A long record shows correlations that are far too small to matter: a few hundredths of the \
-                     square are no missing effect. The rounding of a counter is not white either.";
+                     square do not mean that an effect is missing. The rounding of a counter is not white either.";
 
 /// Whether what is left is white and no longer follows the input, in words.
 fn tests_ui(report: &StepReport, ui: &mut egui::Ui) {
@@ -232,7 +232,7 @@ fn picture_ui(
             plot.add(Span::new("", region).fill(color).border_width(0.0));
         }
         if let Some(before) = before {
-            let name = ("the step before", theme::BEFORE);
+            let name = ("the previous step", theme::BEFORE);
             draw(plot, before, |b| b.rms, name, |line| line.width(1.5));
         }
         let name = ("this model", theme::RESIDUAL);

@@ -12,12 +12,12 @@ pub(super) struct BuiltIn {
 pub(super) const BUILT_IN: [BuiltIn; 4] = [
     BuiltIn {
         file: enclosed::DRIVE_02,
-        title: "A drive that loses its swing",
+        title: "A drive that loses momentum",
         story: "A motor under a velocity relay. It never moves quite as far as its inertia says it should.",
     },
     BuiltIn {
         file: enclosed::DRIVE_12,
-        title: "A drive that answers late",
+        title: "A drive that responds late",
         story: "The same rig with another amplifier and older bearings. One effect is not enough.",
     },
     BuiltIn {

@@ -155,7 +155,7 @@ pub(super) fn trials_ui(index: usize, proposal: &NextExperiment, ui: &mut egui::
         .id_salt(("trials", index))
         .show(ui, |ui| {
             ui.small(tr(
-                "By how much the models would differ, in units of the noise.",
+                "How much the models would differ, in units of the noise.",
             ));
             for trial in &trials {
                 ui.horizontal(|ui| {

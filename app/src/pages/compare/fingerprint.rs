@@ -88,13 +88,13 @@ pub(super) fn ui(
         ],
     );
     time_ui(measurement, report, print, ui);
-    ui.label(tr("The mean over each axis, in units of the noise"));
+    ui.label(tr("The mean along each axis, in units of the noise"));
     let profiles: Vec<&Profile> = print.profiles.iter().collect();
     grid_ui(&profiles, ui, |profile, ui| {
         let output = measurement.outputs.get(profile.output);
         let output = output.map_or("", |c| c.name.as_str());
         ui.label(tr(msg!(
-            "{} over {}",
+            "{} against {}",
             Message::name(output),
             words(&profile.axis)
         )));

@@ -34,7 +34,7 @@ impl Compare {
         if let Some(searching) = &self.unknown.searching {
             ui.strong(tr("The formula of the unknown"));
             ui.label(tr(
-                "No effect of the library explains what is left: a formula is being looked for.",
+                "No effect in the library explains what is left: searching for a formula.",
             ));
             ui.horizontal(|ui| {
                 let width = ui.available_width() - theme::button_width(ui, "Cancel");

@@ -17,7 +17,7 @@ impl Compare {
             return Hint::say("Say which column is what, then open the file.");
         }
         if self.measurement.is_none() && self.opening.is_none() {
-            let sentence = "Begin with a drive that loses its swing: one effect is missing.";
+            let sentence = "Begin with a drive that loses momentum: one effect is missing.";
             return Hint::open(sentence, "v1;compare;compare.file=drive-02");
         }
         let report = self.report().filter(|_| self.job.is_none());
@@ -108,7 +108,7 @@ impl Compare {
     /// What is looked for, or was found, where no effect explains the rest.
     fn formula_hint(&self) -> Option<Hint> {
         if self.unknown.is_busy() {
-            let sentence = "Nothing in the library fits: a formula is being looked for.";
+            let sentence = "Nothing in the library fits: searching for a formula.";
             return Some(Hint::say(sentence));
         }
         let discovery = self.discovery()?;
@@ -117,7 +117,7 @@ impl Compare {
         let sentence = if whole {
             "A formula explains what is left: add it."
         } else {
-            "A formula explains a part of what is left: add it."
+            "A formula explains part of what is left: add it."
         };
         let Some(super::command::Command::AddOwn(typed)) = self.adding(found) else {
             let with = [self.effects.as_slice(), &[EffectId::own(&found.name)?]].concat();
@@ -144,7 +144,7 @@ impl Compare {
         };
         let set = |field, value| Command::Set("compare", field, value);
         Hint {
-            sentence: "Nothing more is missing: compare with what the step before left.".into(),
+            sentence: "Nothing more is missing: compare with what the previous step left.".into(),
             commands: vec![
                 set("look", serde_json::json!(look)),
                 set("before", true.into()),
@@ -171,7 +171,7 @@ impl Compare {
             let sentence = "A slow heating process: find out why it overshoots.";
             return Hint::open(sentence, "v1;compare;compare.file=process-02");
         }
-        let sentence = "A drive that answers late: there one effect is not enough.";
+        let sentence = "A drive that responds late: there one effect is not enough.";
         Hint::open(sentence, "v1;compare;compare.file=drive-12")
     }
 }

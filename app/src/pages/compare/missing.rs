@@ -66,7 +66,9 @@ impl Compare {
             }
         });
         plot_ui(part, TALL, ui);
-        ui.small(tr("Steps over one axis, with bars of two standard errors."));
+        ui.small(tr(
+            "In steps along one axis, with bars of two standard errors.",
+        ));
     }
 
     /// A name that no effect of the user's has yet.

@@ -204,7 +204,7 @@ impl Compare {
                 self.effects_before().is_some() && matches!(self.look, Look::Time | Look::Places);
             let toggle = ui.add_enabled(
                 can,
-                egui::Checkbox::new(&mut before, tr("Beside the step before")),
+                egui::Checkbox::new(&mut before, tr("Show the previous step too")),
             );
             targets.note("before", ui, &toggle);
             if toggle.changed() {
@@ -355,7 +355,7 @@ impl Compare {
 /// The page as the registry has it.
 pub fn page() -> Page {
     let mut view = Compare::default();
-    let door = view.files.door("Drop the measurement to compare it");
+    let door = view.files.door("Drop the measurement here to compare it");
     Page::new("compare", "Compare", view).with_door(door)
 }
 

@@ -70,7 +70,7 @@ pub(super) fn ui(
             }
             ui.small(tr(
                 "With one standard error. Bars: 95 % intervals, from 0 at the left to twice the value; hollow where \
-                 0 is in them."));
+                 they include 0."));
         });
 }
 

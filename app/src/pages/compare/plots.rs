@@ -42,7 +42,8 @@ const ROOM: f64 = 0.08;
 const GROUND: f32 = 0.75;
 
 /// What jumps of the residual are.
-const RESTARTED: &str = "The model starts afresh from an estimated state in each short window: where one begins, the residual (measured minus model) may jump.";
+const RESTARTED: &str = "In each short window the model starts afresh from an estimated state, so that small errors do \
+    not add up: where one begins, the residual (measured minus model) may jump.";
 
 /// Height of the caption, points.
 const CAPTION: f32 = 26.0;
@@ -116,7 +117,7 @@ fn curves(page: &Compare, modelled: bool) -> Vec<Key> {
         curves.push(("model", theme::MODEL, Shape::Dashes));
         curves.push(("residual", theme::RESIDUAL, Shape::Line));
         if page.before && page.report_before().is_some() {
-            curves.push(("the step before", theme::BEFORE, Shape::Line));
+            curves.push(("the previous step", theme::BEFORE, Shape::Line));
         }
         if page.hand().is_some() {
             curves.push(("by hand", theme::BEFORE, Shape::Line));
@@ -306,7 +307,7 @@ fn residual_plot(
         let drawn = drawn(plot, &measurement.time);
         if before.is_some() {
             let line = Line::new(
-                tr("the step before"),
+                tr("the previous step"),
                 points(&measurement.time, &earlier, &drawn),
             );
             plot.line(line.color(theme::BEFORE).width(1.2));

@@ -263,7 +263,8 @@ fn rule_ui(reveal: &Reveal, ui: &mut egui::Ui) {
         fixed(most_effects, 0)
     )));
     ui.label(tr(msg!(
-        "{} of {} points for the numbers: full marks within 5 % or two standard errors, none 50 % beyond.",
+        "{} of {} points for the numbers: full marks within 5 % or two standard errors, none if they are a further 50 \
+         % off.",
         fixed(numbers, 0),
         fixed(most_numbers, 0)
     )));

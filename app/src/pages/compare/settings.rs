@@ -54,7 +54,7 @@ impl Settable for Compare {
         let (settings, present) = (&settings, self.set_to());
         let other = self.other_file(settings, &present)?;
         if settings.effects.len() > MOST_EFFECTS || settings.own.len() > MOST_EFFECTS {
-            return Err(msg!("A link may add {} effects.", MOST_EFFECTS));
+            return Err(msg!("A link may add at most {} effects.", MOST_EFFECTS));
         }
         if settings.file.is_none() && settings.mystery.is_none() {
             if let Some(name) = &settings.model {

@@ -128,7 +128,7 @@ pub(super) fn file_ui(
         }
         if let Some(name) = &page.model_file {
             ui.label(tr(msg!("Begins with {}", name)));
-            if ui.small_button(tr("Forget it")).clicked() {
+            if ui.small_button(tr("Discard it")).clicked() {
                 commands.push(Command::DropModel);
             }
         }
@@ -167,7 +167,7 @@ fn candidates_ui(
         others.into_iter().partition(|c| c.promising);
     if helping.is_empty() {
         ui.label(tr(
-            "No effect in the library would lower the error beyond chance.",
+            "No effect in the library would lower the error by more than chance.",
         ));
     } else {
         ui.strong(tr("What could be missing"));

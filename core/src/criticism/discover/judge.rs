@@ -171,8 +171,8 @@ fn words(discovery: &Discovery) -> Message {
     let Some(found) = discovery.found() else {
         return match (&discovery.curve, discovery.end) {
             (Some(variable), _) => msg!(
-                "None of the formulas that were tried: a smooth curve along the {} foretells more of what is left \
-                 than the best of them.",
+                "None of the formulas that were tried: a smooth curve along the {} predicts more of what is left than \
+                 the best of them.",
                 Message::words(variable.clone())
             ),
             _ => msg!(
@@ -193,7 +193,7 @@ fn words(discovery: &Discovery) -> Message {
         brief(found.error)
     );
     if discovery.end == DiscoveryEnd::Part {
-        text.add("More than noise is left: it is a part of what is missing, or near to it.");
+        text.add("More than noise is left: this is part of what is missing, or close to it.");
     }
     let others = discovery.class().skip(1);
     let others = Message::list(" or ", others.map(|f| Message::name(&f.formula)));

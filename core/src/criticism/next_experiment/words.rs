@@ -17,8 +17,8 @@ pub(super) fn text(proposal: &NextExperiment) -> Message {
         .words(&proposal.input_unit, &proposal.output_unit);
     if proposal.separation < THE_SAME {
         return msg!(
-            "{} do the same to what is measured here, whatever the input: no relay and no other excitation within \
-             the limits tells them apart. Measure another quantity, or what is between.",
+            "{} have the same effect on what is measured here, whatever the input: no relay or other excitation \
+             within the limits can tell them apart. Measure another quantity, or something in between.",
             names
         );
     }
@@ -26,7 +26,7 @@ pub(super) fn text(proposal: &NextExperiment) -> Message {
     if !proposal.sufficient {
         let best = if proposal.separation < LEAST {
             msg!(
-                "The best of those tried is {}: the models would differ by only less than {} times the noise.",
+                "The best of those tried is {}: the models would differ by less than {} times the noise.",
                 program,
                 LEAST
             )

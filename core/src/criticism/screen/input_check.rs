@@ -63,7 +63,7 @@ pub(super) fn checked(
         return say(
             InputVerdict::Ok,
             msg!(
-                "The input explains the motion; {} % of it is left.",
+                "The input explains the motion; {} % of it is left over.",
                 fixed(share, 1)
             ),
         );
@@ -79,9 +79,8 @@ pub(super) fn checked(
             return say(
                 InputVerdict::Sign,
                 msg!(
-                    "The sign of the input is turned: the inertia comes out negative, and with the other sign the \
-                     input explains the motion but for {} % of it. Give the column with a minus, as in --map \
-                     \"u=-NAME\".",
+                    "The sign of the input is flipped: the inertia comes out negative, and with the other sign the \
+                     input explains all but {} % of the motion. Give the column a minus, as in --map \"u=-NAME\".",
                     fixed(share, 1)
                 ),
             );
@@ -104,11 +103,11 @@ pub(super) fn checked(
     }
     let reason = late(signals, widths, left).map_or_else(
         || {
-            "Is it the right column, and was this the input that acted and not one that was measured elsewhere? A \
-             motion that something else imposes does not follow from it."
+            "Is it the right column, and is this the input that acted here, not one measured elsewhere? A motion that \
+             something else imposes does not follow from it."
                 .into()
         },
-        |late| msg!("It would explain more of it if it acted {} s later than it is written down.", fixed(late, 3)),
+        |late| msg!("It would explain more of it if it acted {} s later than recorded.", fixed(late, 3)),
     );
     let text = Message::from("The input does not explain this motion.").and(reason);
     say(InputVerdict::DoesNotExplain, text)
@@ -119,16 +118,17 @@ const AT_TIMES: &str = "The input explains the motion most of the time. At other
     stronger, such as a stop.";
 
 /// Where the input moves a drive, and what it takes to accelerate the body is not seen.
-const NOT_BY_INERTIA: &str = "The input moves the body, but this record hardly tells its inertia: the body sticks, a \
-    spring holds it, or the position is read too coarsely to show an acceleration. Let the input jump further, and \
-    sample the run-up finely.";
+const NOT_BY_INERTIA: &str = "The input moves the body, but this record hardly shows its inertia: the body sticks, a \
+                              spring holds it, or the position is read too coarsely to show an acceleration. Let the \
+                              input jump further, and sample the run-up finely.";
 
 /// Where the output of a process follows the input, but not as a first-order lag and the library would have it.
-const NOT_AS_A_LAG: &str = "The output follows the input, but not in the way of a first-order lag.";
+const NOT_AS_A_LAG: &str = "The output follows the input, but not as a first-order lag would.";
 
 /// Where a process did too little to tell what its input does.
-const TOO_LITTLE: &str = "This record does not tell what the input does to the output: it may make all of the motion, \
-    or none. Let the input change by more or more often, and record until the output has settled.";
+const TOO_LITTLE: &str = "This record does not show what the input does to the output: it may cause all of the \
+                          motion, or none of it. Change the input more strongly or more often, and record until the \
+                          output has settled.";
 
 /// Inertia and viscous friction, each with its error, in the calmer half of the windows of the width that tells the
 /// inertia best: what acts at times only, such as a stop, does not hide there what the input does. None where no width
@@ -192,10 +192,11 @@ fn closed(made: &Controller, explained: bool) -> Message {
         explained: share,
     } = made;
     let plant = if explained {
-        "What is said of the plant comes from how the output moves under this input, which holds in a closed loop too."
+        "What is said about the plant comes from how the output moves under this input, which is valid in a closed \
+         loop too."
     } else {
-        "What the controller does is all that this record shows: it cannot tell the plant. Change the set point or add \
-         steps to the input."
+        "This record shows only what the controller does: it says nothing about the plant. Change the set point or \
+         add steps to the input."
     };
     let share = 100.0 * share;
     msg!(
@@ -235,13 +236,13 @@ fn not_told(signals: &Signals, bench: &Bench) -> Option<Message> {
     let w = reduced.coefficients(&reduced.solve(true)?);
     let steady = reduced.loss(&w) < 0.1 * at(INPUT, INPUT);
     if rests {
-        return Some("The drive rests: this record does not tell its inertia.".into());
+        return Some("The drive is at rest: this record does not show its inertia.".into());
     }
     let changes = at(ACCELERATION, ACCELERATION) > 0.0;
     (steady && changes).then(|| {
         msg!(
-            "This record does not tell the inertia ({} with an error of {}): the speed hardly changes but for its \
-             noise. It tells friction. Let the input jump, and sample the run-up.",
+            "This record does not determine the inertia ({} with an error of {}): apart from noise, the speed hardly \
+             changes. It does show friction. Let the input jump, and sample the run-up.",
             brief(inertia),
             digits(error, 2)
         )
