@@ -142,7 +142,7 @@ impl Bar<'_> {
             }
             ui.separator();
             let mut calm = self.calm;
-            let hint = tr("Nothing moves by itself; Play still plays");
+            let hint = tr("Nothing moves by itself; Play still works");
             if ui
                 .checkbox(&mut calm, tr("Less motion"))
                 .on_hover_text(hint)

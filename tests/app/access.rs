@@ -39,7 +39,7 @@ const PLAIN: [&str; 24] = [
     // Of a process: its input and output are in the units of its file, here 1.
     "Largest input",
     "Largest output",
-    "Speed of the playback, times real time",
+    "Playback speed as a multiple of real time",
 ];
 
 /// Axes and columns that have no unit, but for those of the measurements, which are named by their columns.

@@ -39,7 +39,7 @@ fn a_mystery_is_made_sealed_handed_on_and_revealed() {
     let hint = state(&teacher)["hint"].as_str().expect("a hint").to_owned();
     assert!(hint.starts_with("Share the file or link"), "{hint}");
     // What is chosen afterwards is not in it.
-    let remark = "This is still the mystery that was made: your choices have changed since.";
+    let remark = "This is still the mystery you made before: your choices have changed since.";
     assert!(teacher.query_by_label(remark).is_none());
     click(&mut teacher, "large");
     teacher.get_by_label(remark);
@@ -162,14 +162,14 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
     assert!(row[2].contains('±'), "{row:#?}");
     assert_eq!(decimals(&row[1]), decimals(&row[2]), "{row:#?}");
     // On from there, and not back to the seal.
-    let next = "Nothing more is missing: compare with what the step before left.";
+    let next = "Nothing more is missing: compare with what the previous step left.";
     assert_eq!(state(&student)["hint"], next);
     click(&mut student, "Try it");
     let texts = texts(&student);
-    assert!(texts.iter().any(|t| t == "the step before"), "{texts:#?}");
+    assert!(texts.iter().any(|t| t == "the previous step"), "{texts:#?}");
     let state = state(&student);
     let hint = state["hint"].as_str().expect("a hint");
-    assert!(hint.contains("A drive that answers late"), "{hint}");
+    assert!(hint.contains("A drive that responds late"), "{hint}");
 }
 
 fn harness_refuses_without_a_word(teacher: &mut App) {

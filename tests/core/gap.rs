@@ -92,7 +92,7 @@ fn drive_03_has_its_gap_if_it_started_in_the_middle_and_says_so() {
         estimate
             .text
             .to_string()
-            .contains("if the motor stood in its middle at the start"),
+            .contains("if the motor started in its middle"),
         "{}",
         estimate.text
     );

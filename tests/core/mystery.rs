@@ -313,7 +313,7 @@ fn what_the_bench_cannot_do_is_refused_in_one_sentence() {
         assert!(sentence.ends_with('.'), "{sentence}");
         sentence
     };
-    assert!(refused(vec![], "whale").contains("5 letters: it needs at least 6"));
+    assert!(refused(vec![], "whale").contains("too short (5): it needs at least 6"));
     let strange = Pick {
         effect: id("load_ramp"),
         value: 1.0,

@@ -3,7 +3,7 @@
 use super::cycles::ENOUGH_SAMPLES;
 use super::gap::{GapEstimate, Quality};
 use crate::message::{Message, fixed};
-use crate::msg;
+use crate::{counted, msg};
 
 /// Traverses up to which all of them are spoken for; of more, nine in ten.
 const FEW: usize = 10;
@@ -15,6 +15,7 @@ const AGREES: f64 = 0.1;
 pub(super) fn text(estimate: &GapEstimate, flips: bool) -> Message {
     let (scale, unit) = estimate.written_in();
     let travel = number(estimate.travel * scale);
+    let contacts = counted!(estimate.contacts.len(), "1 contact", "{} contacts");
     match estimate.quality {
         Quality::TooFewSamples => too_few_samples(None),
         Quality::NoDriftingTest => {
@@ -24,7 +25,7 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> Message {
         }
         Quality::NoEngagement if !flips => msg!(
             "no engagement seen: the motor met no load on its {} {} of travel, and the asymmetry of the relay never \
-             changed its sign, so that this is no drifting test either",
+             changed its sign, so that this is not a drifting test either",
             travel,
             unit
         ),
@@ -32,24 +33,25 @@ pub(super) fn text(estimate: &GapEstimate, flips: bool) -> Message {
             msg!("no engagement seen: the gap may be wider than the travel of {} {}, or there is no load", travel, unit)
         }
         Quality::Disturbed => "no engagement seen: the motor is disturbed, but not by contacts with a load, since the \
-            force acts all through the cycle (cogging, changing friction and a shaft that yields do so)"
+                               force acts all through the cycle (as with cogging, changing friction or a flexible \
+                               shaft)"
             .into(),
         Quality::OneSide => msg!(
-            "the load was met at one side only ({} contacts); the gap may be wider than the travel of {} {}",
-            estimate.contacts.len(),
+            "the load was met on one side only ({}); the gap may be wider than the travel of {} {}",
+            contacts,
             travel,
             unit
         ),
         Quality::Undecided => msg!(
-            "the load was met on both sides ({} contacts), but it moved so much in between that the gap remains open",
+            "the load was met on both sides ({} contacts), but it moved so much in between that the width of the gap \
+             stays unknown",
             estimate.contacts.len()
         ),
         Quality::AssumedCentre => msg!(
-            "the gap is {}, if the motor stood in its middle at the start: the load was met at one side only ({} \
-             contacts), and the travel from the start to the first contact counts as half a gap; no traverse \
-             confirms it",
+            "the gap is {}, if the motor started in its middle: the load was met on one side only ({}), and the \
+             travel from the start to the first contact counts as half a gap; no traverse confirms it",
             value(estimate),
-            estimate.contacts.len()
+            contacts
         ),
         Quality::Good | Quality::Fair | Quality::Poor => {
             msg!("the gap is {}: {}", value(estimate), agreement(estimate))
@@ -108,8 +110,8 @@ fn agreement(estimate: &GapEstimate) -> Message {
     let agree = off.iter().filter(|o| **o <= AGREES).count();
     let last = off.last().copied().unwrap_or(0.0);
     match off.len() {
-        0 => "by the travel between contacts at both sides".into(),
-        1 => "one traverse; a longer test would check it".into(),
+        0 => "by the travel between contacts on both sides".into(),
+        1 => "one traverse; a longer test would confirm it".into(),
         n if n == agree && n <= FEW => {
             msg!("{} traverses agree within {}", word(n), percent(last))
         }

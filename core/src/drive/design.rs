@@ -355,7 +355,7 @@ impl Candidate {
         warn(
             samples,
             msg!(
-                "A period has {} samples only: the controller should sample every {} s.",
+                "A period has only {} samples: the controller should sample every {} s.",
                 fixed(self.samples(), 1),
                 brief(self.cycle.period / FEWEST_SAMPLES)
             ),

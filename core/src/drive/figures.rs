@@ -88,13 +88,15 @@ pub fn figures() -> Vec<DriveFigure> {
         DriveFigure {
             number: 7,
             title: "backlash map",
-            claim: "Load over motor position is a loop of two parallel branches, 2β apart.",
+            claim: "Plotted against the motor's position, that of the load is a loop of two parallel branches, 2β \
+                    apart.",
             input: map,
         },
         DriveFigure {
             number: 8,
             title: "two-mass structure",
-            claim: "In the open gap each mass moves by itself; an impact hands momentum over, and the sum of both stays.",
+            claim: "In the open gap each mass moves by itself; an impact passes momentum from one to the other, and \
+                    their sum stays the same.",
             input: structure,
         },
         DriveFigure {
@@ -232,7 +234,7 @@ fn hands_its_momentum_over(input: &DriveInput, run: &DriveRun) -> Vec<Check> {
         ),
         check(
             msg!(
-                "an impact hands over up to {} mN m s; the sum of both changes by {} meanwhile, which the torque does",
+                "an impact transfers up to {} mN m s; their sum changes by {} meanwhile, because of the torque",
                 fixed(MILLI * handed, 3),
                 fixed(MILLI * lost, 3)
             ),
@@ -272,7 +274,7 @@ fn stays_in_the_gap(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Ve
         ),
         check(
             msg!(
-                "its period, {} ms, is that of the closed form to {} digits",
+                "its period, {} ms, matches the closed form to {} digits",
                 fixed(1e3 * period, 4),
                 digits(missed)
             ),
@@ -309,7 +311,7 @@ fn drifts_as_the_formula_says(input: &DriveInput, summary: &Summary) -> Vec<Chec
     vec![
         check(
             msg!(
-                "it drifts at {} mrad/s, the closed form to {} digits",
+                "it drifts at {} mrad/s, which matches the closed form to {} digits",
                 fixed(MILLI * drift.velocity, 3),
                 digits(missed)
             ),
@@ -345,7 +347,7 @@ fn changes_its_drift_at_the_ends(
         let engaged = engaged.abs();
         all.push(check(
             msg!(
-                "it drifts at {} mrad/s in the gap, at {} where it pushes the load",
+                "it drifts at {} mrad/s in the gap, and at {} while it pushes the load",
                 fixed(MILLI * free, 2),
                 fixed(MILLI * engaged, 2)
             ),

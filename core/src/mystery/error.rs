@@ -48,7 +48,7 @@ impl MysteryError {
     pub fn message(&self) -> Message {
         match self {
             Self::ShortWord { found } => msg!(
-                "The password has {} letters: it needs at least {}.",
+                "The password is too short ({}): it needs at least {} characters.",
                 found,
                 SHORTEST_WORD
             ),

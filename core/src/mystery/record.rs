@@ -174,7 +174,7 @@ impl Mystery {
         let bad = MysteryError::BadLink;
         let packed = LETTERS
             .decode(text)
-            .map_err(|_| bad("it has letters that do not belong there"))?;
+            .map_err(|_| bad("it has characters that do not belong there"))?;
         let (kind, packed) = match packed.split_first() {
             Some((&DRIVE, packed)) => (Kind::Drive, packed),
             Some((&PROCESS, packed)) => (Kind::Process, packed),
@@ -211,7 +211,7 @@ impl Mystery {
             }
         }
         if !rest.is_empty() {
-            return Err(bad("it goes on behind its end"));
+            return Err(bad("it goes on beyond its end"));
         }
         Ok(Self {
             kind,

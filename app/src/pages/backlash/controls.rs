@@ -99,7 +99,7 @@ impl Backlash {
         )
         .on_hover_text(tr("Speed at which the relay reverses the push"));
         slider(ui, &mut r.delay, 0.0, 1e3, 0.0..=2.0, "delay [ms]")
-            .on_hover_text(tr("How late the push follows the switch"));
+            .on_hover_text(tr("How long after a switch the push changes"));
         let mut flip = relay.flip.unwrap_or(0.0);
         let before = flip;
         slider(
@@ -152,9 +152,8 @@ impl Backlash {
         });
         match &mut drive.contact {
             Contact::Rigid { restitution } => {
-                slider(ui, restitution, 1.0, 1.0, 0.0..=1.0, "restitution").on_hover_text(tr(
-                    "Share of the speed with which they part after an impact",
-                ));
+                slider(ui, restitution, 1.0, 1.0, 0.0..=1.0, "restitution")
+                    .on_hover_text(tr("Fraction of the impact speed at which they part again"));
             }
             Contact::Compliant { stiffness, damping } => {
                 slider(
@@ -271,7 +270,7 @@ impl Backlash {
         if reset_asked(ui, &speed) {
             self.speed = SPEED;
         }
-        speed.on_hover_text(tr("Speed of the playback, times real time"));
+        speed.on_hover_text(tr("Playback speed as a multiple of real time"));
         ui.label(tr_number(format!("t = {:.4} s", self.playback.clock)));
     }
 

@@ -10,8 +10,8 @@ use super::units::MILLI;
 pub fn lesson(input: &DriveInput, run: &DriveRun, summary: &Summary) -> Message {
     if let Some(time) = run.chattering {
         return msg!(
-            "The run was cut at {} s: there it switches or bounces without end. Some loss at impact (restitution \
-             below 1), or a delay, would end that.",
+            "The run was stopped at {} s, where it switches or bounces without end. Some loss at impact (restitution \
+             below 1) or a delay would prevent that.",
             fixed(time, 3)
         );
     }

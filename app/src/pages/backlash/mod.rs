@@ -169,7 +169,7 @@ impl Backlash {
     fn open_held(&mut self, ctx: &egui::Context, file: Held) {
         if !measurement(&file.name) {
             self.message = Some(msg!(
-                "{} is a model, which this page has no use for: open it in Compare, beside a measurement.",
+                "{} is a model, which this page has no use for: open it in Compare, together with a measurement.",
                 file.name
             ));
             return;
@@ -427,9 +427,7 @@ impl Backlash {
 /// The page as the registry has it.
 pub fn page() -> Page {
     let mut view = Backlash::default();
-    let door = view
-        .files
-        .door("Drop the measurement to find the gap in it");
+    let door = view.files.door("Drop the measurement here to find its gap");
     Page::new("backlash", "Backlash", view).with_door(door)
 }
 

@@ -193,7 +193,7 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         ui.label(tr("The load was not measured: there is no map."));
         return;
     }
-    let mut curves = vec![("x2 over x1", LOAD, Shape::Line)];
+    let mut curves = vec![("x2 against x1", LOAD, Shape::Line)];
     if scene.input().is_some() {
         curves.push(("ends of the gap", CONTACT, Shape::Dashes));
     }
@@ -203,7 +203,7 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let chart = still("map", "motor x1 [mrad]", "load x2 [mrad]", height).linked(motor());
     let shown = chart.show(ui, |plot| {
         plot.points(
-            Points::new(tr("x2 over x1"), curve(&scene.map))
+            Points::new(tr("x2 against x1"), curve(&scene.map))
                 .color(LOAD)
                 .radius(1.2),
         );

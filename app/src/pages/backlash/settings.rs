@@ -112,14 +112,17 @@ impl Settings {
             relay.validate().map_err(|e| sentence(e.into()))?;
         }
         if !(run.duration > 0.0 && run.duration <= LONGEST_RUN) {
-            return Err(msg!("A run must last above 0 to {} s.", LONGEST_RUN));
+            return Err(msg!(
+                "A run must last more than 0 and at most {} s.",
+                LONGEST_RUN
+            ));
         }
         let samples = run.step.map_or(0.0, |step| run.duration / step);
         if !(0.0..=MOST_SAMPLES).contains(&samples) {
-            return Err(msg!("A run may have {} samples.", MOST_SAMPLES));
+            return Err(msg!("A run may have at most {} samples.", MOST_SAMPLES));
         }
         if run.max_events > hysteron_core::drive::MAX_EVENTS {
-            return Err(sentence("it may have 500,000 events".into()));
+            return Err(sentence("it may have at most 500,000 events".into()));
         }
         let positive = |v: f64| v > 0.0 && v <= 1e6;
         if !positive(self.expected_gap) || !positive(self.largest_torque) {

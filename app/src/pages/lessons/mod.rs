@@ -26,7 +26,7 @@ impl View for Lessons {
                 ui.add_space(6.0);
                 theme::answer_ui(ui, "What can a relay teach in ten minutes?");
                 ui.label(tr(
-                    "Each lesson stands beside the app: its buttons set the pages, and its question is checked."));
+                    "Each lesson opens beside the app: its buttons set up the pages, and your answer is checked."));
                 ui.add_space(8.0);
                 let all: Vec<_> = lessons::all().enumerate().collect();
                 if ui.available_width() < layout::NARROW {

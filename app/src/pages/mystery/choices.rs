@@ -22,7 +22,7 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
         ),
         Experiment::Relay => (
             "Relay",
-            "A relay on the velocity: shows what comes late and what pushes to one side.",
+            "A relay on the velocity: shows what acts late and what pushes to one side.",
         ),
         Experiment::Stairs => (
             "Staircase",
@@ -35,11 +35,11 @@ fn words(experiment: Experiment) -> (&'static str, &'static str) {
         ),
         Experiment::ProcessBinary => (
             "Two levels",
-            "Two levels, held for random times: shows what comes late.",
+            "Two levels, held for random times: shows what acts late.",
         ),
         Experiment::ProcessRelay => (
             "Relay",
-            "A relay on the output: shows what comes late and what drifts.",
+            "A relay on the output: shows what acts late and what drifts.",
         ),
         Experiment::ProcessStairs => (
             "Staircase",
@@ -125,8 +125,8 @@ impl Bench {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
         let names = self.menu().iter().filter(shown).map(Hideable::name);
         msg!(
-            "It may hide: {}. One mystery in five hides nothing, half of them one effect, the others two of \
-             different kinds, all between small and large.",
+            "It may hide: {}. One mystery in five hides nothing, half hide one effect, and the rest two of different \
+             kinds, anywhere from small to large.",
             Message::list(", ", names)
         )
     }
@@ -151,7 +151,7 @@ impl Bench {
                 }
             });
         if self.picks().is_empty() {
-            ui.label(tr("Nothing is chosen: then nothing is missing, which is for your students to find out."));
+            ui.label(tr("Nothing is chosen: then nothing is missing, and that is for your students to find out."));
         }
     }
 

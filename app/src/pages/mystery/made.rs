@@ -89,12 +89,12 @@ pub(super) fn ui(product: &Product, changed: bool, ui: &mut egui::Ui, desk: &mut
     }
     egui::Frame::group(ui.style()).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.strong(tr(msg!("{} is made.", name)));
+        ui.strong(tr(msg!("{} is ready.", name)));
         ui.label(tr(msg!("{} samples in {} s. What is hidden is sealed inside.", samples, fixed(*duration, 1))));
         if changed {
             let color = ui.visuals().warn_fg_color;
             theme::tell(&ui.colored_label(color, tr(
-                "This is still the mystery that was made: your choices have changed since.")));
+                "This is still the mystery you made before: your choices have changed since.")));
         }
         ui.horizontal_wrapped(|ui| {
             let save = ui.button(tr("Save the file"));
@@ -116,7 +116,7 @@ pub(super) fn ui(product: &Product, changed: bool, ui: &mut egui::Ui, desk: &mut
             if copy.clicked() {
                 desk.commands.push(Command::CopyOther {
                     link: link.clone(),
-                    saying: "The link to the mystery is copied. The record is in it, and the truth, sealed.",
+                    saying: "The link to the mystery is copied. It holds the record and, sealed, the truth.",
                 });
             }
             if !fits {

@@ -62,7 +62,7 @@ impl Bench {
     fn obstacle(&self) -> Option<Message> {
         let letters = self.word.trim().chars().count();
         (letters < SHORTEST_WORD)
-            .then(|| msg!("The password needs {} letters or more.", SHORTEST_WORD))
+            .then(|| msg!("The password needs at least {} characters.", SHORTEST_WORD))
     }
 
     fn make(&mut self, ctx: &egui::Context) {
@@ -276,7 +276,7 @@ impl Bench {
             return Hint::say("Share the file or link. Solvers need your password.");
         }
         Hint::open(
-            "Never looked for a hidden effect? Begin with a drive that loses its swing.",
+            "Never looked for a hidden effect? Begin with a drive that loses momentum.",
             "v1;compare;compare.file=drive-02",
         )
     }

@@ -38,7 +38,7 @@ const DOORS: [Door; 3] = [
         page: "explore",
         button: "Open Explore",
         question: "How does a relay loop oscillate?",
-        story: "Turn the knobs and see the exact limit cycle beside what the describing function predicts.",
+        story: "Move the sliders and see the exact limit cycle beside what the describing function predicts.",
     },
     Door {
         page: "backlash",
