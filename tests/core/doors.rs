@@ -448,7 +448,8 @@ fn what_a_mapping_leaves_out_and_is_used_by_its_name_is_said() {
     };
     let m = mapped("v1=speed_2");
     assert_eq!(m.outputs.len(), 2);
-    let said = "The column 'x1' is used as well, by its name: x1=- in the mapping leaves it out.";
+    let said =
+        "The column 'x1' is used as well, because of its name: x1=- in the mapping leaves it out.";
     assert!(m.warnings.iter().any(|w| *w == said), "{:?}", m.warnings);
     let m = mapped("v1=speed_2,x1=-");
     assert_eq!(m.outputs.len(), 1);

@@ -599,9 +599,9 @@ fn what_only_one_column_can_be_it_is() {
         m.warnings,
         [
             "The column 'note' is not used: a process has t, u, y.",
-            "The column 'time_ms' is taken for the time.",
-            "The column 'heater_pwm' is taken for the input.",
-            "The column 'Temperature' is taken for the output.",
+            "The column 'time_ms' is taken as the time.",
+            "The column 'heater_pwm' is taken as the input.",
+            "The column 'Temperature' is taken as the output.",
             "No unit is given for heater_pwm, Temperature: taken as plain numbers.",
         ]
     );

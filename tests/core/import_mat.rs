@@ -429,7 +429,7 @@ fn records_of_the_toolbox_are_read_at_once() {
         ("val", input.clone(), other, 0.5),
     ]);
     let record = read(&bytes, "", None);
-    let said = "The file holds id, val: 'id' was read. A mapping reads another one.";
+    let said = "The file holds id, val: 'id' was read. A mapping can read another one.";
     assert!(
         notes(&record).contains(&said.to_owned()),
         "{:?}",

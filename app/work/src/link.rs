@@ -34,7 +34,7 @@ pub fn write(page: &str, settings: &Value, defaults: &Value) -> String {
 pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), Message> {
     if text.len() > LONGEST {
         return Err(msg!(
-            "This link is too long: {} characters where {} are the most.",
+            "This link is too long: it has {} characters, and at most {} are allowed.",
             text.len(),
             LONGEST
         ));
@@ -53,7 +53,7 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), Message> {
         }
         _ => {
             return Err(msg!(
-                "This is no link to Hysteron: it should begin with #{};.",
+                "This is not a link to Hysteron: it should begin with #{};.",
                 VERSION
             ));
         }
@@ -72,7 +72,7 @@ pub fn read(text: &str, defaults: &Value) -> Result<(String, Value), Message> {
             .try_fold(&mut settings, |at, key| at.as_object_mut()?.get_mut(key));
         let Some(place) = place else {
             return Err(msg!(
-                "This link sets what Hysteron does not know: {}.",
+                "This link sets something that Hysteron does not know: {}.",
                 Message::name(shortened(path))
             ));
         };
@@ -290,7 +290,7 @@ pub fn parsed<T: DeserializeOwned>(value: &Value) -> Result<T, Message> {
 pub fn not_enclosed(name: &str) -> Message {
     let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
     msg!(
-        "This link is about the file {}, which is not part of it: open that file here.",
+        "This link needs the file {}, which is not part of it: open that file here.",
         Message::name(name)
     )
 }

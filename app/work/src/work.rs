@@ -79,7 +79,7 @@ pub(crate) fn unclear(file: &str, bytes: &[u8], error: &ImportError) -> Option<U
     let columns = columns(file, bytes).ok()?;
     let reason = match error.problem {
         // What the command line says goes on about options.
-        Problem::NotMapped { .. } => "A file of MATLAB does not say what its columns are.".into(),
+        Problem::NotMapped { .. } => "A MATLAB file does not say what its columns are.".into(),
         _ => ImportError {
             advice: None,
             ..error.clone()

@@ -25,7 +25,7 @@ impl Effect for CoggingHarmonics {
     }
 
     fn sentence(&self) -> &'static str {
-        "The pull of magnets or teeth is no pure wave over the angle: a second one, twice as fine, comes on top."
+        "The pull of magnets or teeth is not a pure sine of the angle: a second wave, twice as fine, comes on top."
     }
 
     fn equation(&self) -> &'static str {

@@ -22,7 +22,7 @@ impl Effect for DeadZone {
     }
 
     fn sentence(&self) -> &'static str {
-        "Small commands have no effect at all, and large ones lose the same piece."
+        "Small commands have no effect at all, and large ones lose the same amount."
     }
 
     fn equation(&self) -> &'static str {

@@ -23,7 +23,7 @@ impl Effect for DirectionalFriction {
     }
 
     fn sentence(&self) -> &'static str {
-        "Dry friction is stronger in one direction than in the other, as behind a worm gear or a worn seal."
+        "Dry friction is stronger in one direction than in the other, as with a worm gear or a worn seal."
     }
 
     fn equation(&self) -> &'static str {

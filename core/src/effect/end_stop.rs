@@ -42,7 +42,7 @@ impl Effect for EndStop {
     }
 
     fn sentence(&self) -> &'static str {
-        "The way ends at a stop: there the drive runs into something that gives way a little and throws it back."
+        "The travel ends at a stop: there the drive runs into something that gives a little and throws it back."
     }
 
     fn equation(&self) -> &'static str {

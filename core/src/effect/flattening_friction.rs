@@ -25,7 +25,7 @@ impl Effect for FlatteningFriction {
     }
 
     fn sentence(&self) -> &'static str {
-        "Friction grows with speed at first and then ever less, as in a gear whose grease gets thinner the faster it turns."
+        "Friction grows with speed, but less and less, as in a gear whose grease gets thinner the faster it turns."
     }
 
     fn equation(&self) -> &'static str {
@@ -50,7 +50,7 @@ impl Effect for FlatteningFriction {
             },
             ParameterSpec {
                 symbol: "v_h",
-                label: "speed at which half of it is there",
+                label: "speed at which half of it is reached",
                 dimension: Dimension::Speed,
                 range: Range::Positive,
             },

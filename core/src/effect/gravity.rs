@@ -29,7 +29,7 @@ impl Effect for Gravity {
     }
 
     fn sentence(&self) -> &'static str {
-        "An arm that is heavier on one side wants to hang down: the torque goes with the sine of its angle."
+        "An arm that is heavier on one side wants to hang down: the torque varies with the sine of its angle."
     }
 
     fn equation(&self) -> &'static str {

@@ -19,7 +19,8 @@ impl Effect for InverseResponse {
     }
 
     fn sentence(&self) -> &'static str {
-        "Two ways lead from the input to the output, a fast one and a stronger one against it: the output first goes the wrong way."
+        "Two paths lead from the input to the output, a fast one and a stronger one that works against it: the output \
+         first goes the wrong way."
     }
 
     fn equation(&self) -> &'static str {
@@ -44,7 +45,7 @@ impl Effect for InverseResponse {
             },
             ParameterSpec {
                 symbol: "T_z",
-                label: "time constant of the wrong way",
+                label: "time constant of the inverse response",
                 dimension: Dimension::Time,
                 range: Range::NonNegative,
             },

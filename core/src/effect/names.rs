@@ -10,7 +10,7 @@ use crate::measurement::Kind;
 impl EffectId {
     /// Names that an effect of one's own may have.
     pub const OWN_NAMES: &'static str =
-        "small letters, digits and _, at most 24, a letter first, and not a name of the library";
+        "lower-case letters, digits and _, at most 24, a letter first, not a name from the library";
 
     /// The id of a user's own effect: small letters, digits and `_`, at most 24, a letter first, and not the
     /// name of an effect of the library. The name is kept as long as the program runs.

@@ -21,7 +21,7 @@ impl Effect for NonlinearLoss {
     }
 
     fn sentence(&self) -> &'static str {
-        "The hotter it gets, the more it loses for each further degree, as by radiation and by air that rises."
+        "The hotter it gets, the more it loses for each further degree, as by radiation and rising air."
     }
 
     fn equation(&self) -> &'static str {

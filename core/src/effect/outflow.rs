@@ -22,7 +22,8 @@ impl Effect for Outflow {
     }
 
     fn sentence(&self) -> &'static str {
-        "A tank empties through an opening: twice the level does not give twice the outflow, since it goes with the root."
+        "A tank empties through an opening: twice the level does not give twice the outflow, which goes with the \
+         square root of the level."
     }
 
     fn equation(&self) -> &'static str {

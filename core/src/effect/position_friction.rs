@@ -14,15 +14,15 @@ impl Effect for PositionFriction {
     }
 
     fn name(&self) -> &'static str {
-        "Friction along the way"
+        "Position-dependent friction"
     }
 
     fn sentence(&self) -> &'static str {
-        "The guide is tighter at one end than at the other, so that dry friction grows along the way."
+        "The guide is tighter at one end than at the other, so that dry friction grows along the travel."
     }
 
     fn equation(&self) -> &'static str {
-        "F = -g x sgn(v), beside what dry friction has where x = 0"
+        "F = -g x sgn(v), on top of the dry friction at x = 0"
     }
 
     fn source(&self) -> &'static str {
@@ -36,7 +36,7 @@ impl Effect for PositionFriction {
     fn parameters(&self) -> &'static [ParameterSpec] {
         &[ParameterSpec {
             symbol: "g",
-            label: "rise of the friction level along the way",
+            label: "rise of the friction level along the travel",
             dimension: Dimension::Stiffness,
             range: Range::Signed,
         }]

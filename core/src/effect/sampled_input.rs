@@ -20,7 +20,8 @@ impl Effect for SampledInput {
     }
 
     fn sentence(&self) -> &'static str {
-        "The controller moved its output more often than it was written down: between two samples it was on its way to the next."
+        "The controller changed its output more often than it was logged: between two samples it was already on its \
+         way to the next."
     }
 
     fn equation(&self) -> &'static str {
@@ -38,7 +39,7 @@ impl Effect for SampledInput {
     fn parameters(&self) -> &'static [ParameterSpec] {
         &[ParameterSpec {
             symbol: "h",
-            label: "share of the next sample",
+            label: "share of the way to the next sample",
             dimension: Dimension::Ratio,
             range: Range::UnitInterval,
         }]

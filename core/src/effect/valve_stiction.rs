@@ -37,7 +37,7 @@ impl Effect for ValveStiction {
         &[
             ParameterSpec {
                 symbol: "b",
-                label: "how far the valve stays behind",
+                label: "how far the valve lags behind",
                 dimension: Dimension::Force,
                 range: Range::NonNegative,
             },

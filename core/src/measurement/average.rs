@@ -72,7 +72,7 @@ pub(super) fn thin(
         .collect();
     *time = places().map(|at| time[at]).collect();
     Some(msg!(
-        "The record has {} samples, many more than what moves in it needs: the means of {} are taken.",
+        "The record has {} samples, many more than its motion needs: each {} of them are averaged into one.",
         n,
         every
     ))

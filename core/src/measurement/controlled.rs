@@ -44,7 +44,7 @@ pub(super) fn as_in_the_loop(
     Some(if let Some(nearer) = nearer {
         let [output, aim] = nearer.map(Message::name);
         msg!(
-            "'{}' comes nearer to '{}' than '{}' does: '{}' is taken for what a controller put out, which is the \
+            "'{}' stays closer to '{}' than '{}' does: '{}' is taken as the output of a controller, which is the \
              input here.",
             output,
             aim,
@@ -54,7 +54,8 @@ pub(super) fn as_in_the_loop(
     } else {
         let warm = Message::name(shorten(&fields[comes_out].name));
         msg!(
-            "'{}' is what comes out: '{}' is taken for what a controller put out, which is the input here.",
+            "'{}' is what comes out of the plant: '{}' is taken as the output of a controller, which is the input \
+             here.",
             warm,
             own
         )

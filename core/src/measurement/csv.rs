@@ -50,7 +50,7 @@ pub(super) fn import_text(
     if let Some((place, period)) = period_column(&fields, &options, rows.clone(), dialect) {
         let name = shorten(&fields[place].name);
         notes.push(msg!(
-            "The column '{}' is taken for the sampling period, {} s.",
+            "The column '{}' is taken as the sampling period, {} s.",
             Message::name(name),
             period.seconds()
         ));
@@ -180,7 +180,7 @@ fn said_of_repeated(count: usize) -> Option<Message> {
     match count {
         0 => None,
         1 => Some(msg!(
-            "{} row repeats the one before, time and values: each is read once.",
+            "{} row repeats the one before, time and values: it is read once.",
             count
         )),
         _ => Some(msg!(

@@ -236,14 +236,14 @@ impl Problem {
                 Message::name(found.clone())
             ),
             Self::NeedlessTorqueConstant { unit, given } => msg!(
-                "a torque constant by {} does not fit an input in {}; it makes torque of a current in A, a \
-                 voltage in V or a command in %, PWM, counts or 1",
+                "a torque constant per {} does not fit an input in {}; it turns a current in A, a voltage in V or a \
+                 command in %, PWM, counts or 1 into a torque",
                 given,
                 Message::name(unit.clone())
             ),
             Self::NotMapped { found } => msg!(
-                "a file of MATLAB does not say which variable is what; map them, such as t=time [s], u=current \
-                 [A], x1=angle [rad]; it has {}",
+                "a MATLAB file does not say which variable is what; map them, such as t=time [s], u=current [A], \
+                 x1=angle [rad]; it has {}",
                 Message::name(found.clone())
             ),
             Self::Lengths { found, other, expected } => msg!(
@@ -262,11 +262,11 @@ impl Problem {
                 table
             ),
             Self::Json { what } => msg!(
-                "the file begins as JSON does, but is none: {}",
+                "the file begins like JSON, but is not JSON: {}",
                 Message::name(what.clone())
             ),
             Self::Hdf5Damaged { what } => msg!(
-                "the HDF5 file is damaged, or has what is not read here: {}; save it from MATLAB with -v7",
+                "the HDF5 file is damaged, or has something that is not read here: {}; save it from MATLAB with -v7",
                 Message::name(what.clone())
             ),
             #[cfg(target_arch = "wasm32")]
@@ -289,7 +289,7 @@ impl Problem {
                     .into()
             }
             Self::Twice { name } => msg!(
-                "the column '{}' stands there twice; each may come once",
+                "the column '{}' appears twice; each may appear only once",
                 Message::name(name.clone())
             ),
             Self::Mixed { one, other } => msg!(
@@ -313,8 +313,8 @@ impl Problem {
                 Message::name(text.clone())
             ),
             Self::Size { text } => msg!(
-                "'{}' is no measurement: it is too large or too small to calculate with, by itself or beside \
-                 the rest of its column; remove the row or measure again",
+                "'{}' is not a measurement: it is too large or too small to calculate with, by itself or next to the \
+                 rest of its column; remove the row or measure again",
                 Message::name(text.clone())
             ),
             Self::TimeOrder { before, now } => msg!(
@@ -323,13 +323,13 @@ impl Problem {
                 Message::name(before.clone())
             ),
             Self::TimeTwice { time } => msg!(
-                "time does not increase: {} s stands in two rows with different values; where the clock is too \
-                 coarse for its rows, give the sampling period, which then counts instead",
+                "time does not increase: {} s appears in two rows with different values; if the clock is too coarse \
+                 for its rows, give the sampling period, which is then used instead",
                 Message::name(time.clone())
             ),
             Self::TimeBeginsAnew { before, now } => msg!(
-                "time begins anew here ({} s after {} s), as in another run; what a process did between two \
-                 runs is not known: save each run in a file of its own",
+                "time starts over here ({} s after {} s), as in another run; what a process did between two runs is \
+                 not known: save each run in a file of its own",
                 Message::name(now.clone()),
                 Message::name(before.clone())
             ),

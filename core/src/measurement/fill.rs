@@ -155,18 +155,18 @@ fn only_left(columns: &[FoundColumn], free: &[usize], found: &[Candidates]) -> O
 /// That a column has a role.
 fn taken(column: Message, role: Role) -> Message {
     match role {
-        Role::Time => msg!("The column '{}' is taken for the time.", column),
+        Role::Time => msg!("The column '{}' is taken as the time.", column),
         Role::Measured(Quantity::Input) => {
-            msg!("The column '{}' is taken for the input.", column)
+            msg!("The column '{}' is taken as the input.", column)
         }
         Role::Measured(Quantity::Position | Quantity::LoadPosition) => {
-            msg!("The column '{}' is taken for the position.", column)
+            msg!("The column '{}' is taken as the position.", column)
         }
         Role::Measured(Quantity::Velocity | Quantity::LoadVelocity) => {
-            msg!("The column '{}' is taken for the velocity.", column)
+            msg!("The column '{}' is taken as the velocity.", column)
         }
         Role::Measured(Quantity::Output) => {
-            msg!("The column '{}' is taken for the output.", column)
+            msg!("The column '{}' is taken as the output.", column)
         }
     }
 }

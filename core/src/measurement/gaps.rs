@@ -42,12 +42,12 @@ pub(super) fn said(kind: Kind, time: &[f64]) -> Option<Message> {
         let longest = format!("{longest:.3e}").parse().unwrap_or(longest);
         match found.len() {
             1 => msg!(
-                "The time has {} gap, the longest of {} s: the input counts as held over them.",
+                "The time has {} gap, of {} s: the input is taken as held across it.",
                 1,
                 longest
             ),
             many => msg!(
-                "The time has {} gaps, the longest of {} s: the input counts as held over them.",
+                "The time has {} gaps, the longest of {} s: the input is taken as held across them.",
                 many,
                 longest
             ),
@@ -101,7 +101,7 @@ mod tests {
         let said = said(Kind::Process, &times(0.0)).unwrap();
         assert_eq!(
             said,
-            "The time has 4 gaps, the longest of 101 s: the input counts as held over them."
+            "The time has 4 gaps, the longest of 101 s: the input is taken as held across them."
         );
     }
 }

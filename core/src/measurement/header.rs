@@ -392,9 +392,9 @@ fn make_torque(header: &mut Header, options: &ImportOptions) -> Result<(), Locat
     gives.si().clone_into(&mut column.unit);
     if options.torque_constant.is_none() {
         header.notes.push(msg!(
-            "The torque constant is not known: 1 {}/{} is taken. Inertias, frictions and loads below therefore stand \
-             in multiples of it: multiply them by the true one. Times, gaps and which effects are found do not \
-             depend on it.",
+            "The torque constant is not known: 1 {}/{} is assumed. Inertias, frictions and loads below are therefore \
+             multiples of it: multiply them by the true one. Times, gaps and which effects are found do not depend on \
+             it.",
             gives.si(),
             before.si()
         ));
@@ -421,7 +421,7 @@ fn present(roles: &[Option<Role>], kind: Kind, timed: bool) -> Result<(), Locate
     if !has(Role::Time) && !timed {
         return missing(
             "t",
-            "add the time, such as t [s], or say the sampling period",
+            "add the time, such as t [s], or give the sampling period",
         );
     }
     if !measured(Quantity::Input) {

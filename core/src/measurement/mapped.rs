@@ -81,7 +81,7 @@ pub(super) fn map(fields: &mut [Field], mapping: &Mapping) -> Result<Vec<Message
             .role
             .filter(|role| output(*role) && !mapping.speaks_of(*role))?;
         Some(msg!(
-            "The column '{}' is used as well, by its name: {}=- in the mapping leaves it out.",
+            "The column '{}' is used as well, because of its name: {}=- in the mapping leaves it out.",
             Message::name(shorten(&field.name)),
             role.name()
         ))

@@ -120,12 +120,12 @@ impl MappingError {
                 Message::name(name.clone())
             ),
             Self::Twice { name } => msg!(
-                "'{}' stands in the mapping twice; each may come once",
+                "'{}' appears in the mapping twice; each may appear only once",
                 Message::name(name.clone())
             ),
             Self::NotATorqueConstant { text } => msg!(
-                "'{}' is not a torque constant; expected a number but zero and its unit, such as 0.05 N m/A, 2 N/A \
-                 or 0.1 N m/V",
+                "'{}' is not a torque constant; expected a number other than zero and its unit, such as 0.05 N m/A, 2 \
+                 N/A or 0.1 N m/V",
                 Message::name(text.clone())
             ),
         }

@@ -52,7 +52,7 @@ pub(super) fn contradiction(time: &[f64], outputs: &[Channel]) -> Option<Message
     let ratio = fixed(ratio, digits);
     Some(match hint {
         Some((of, unit)) => msg!(
-            "{} is {} times the rate at which {} moves: check their units and that of the time, {} looks like {}.",
+            "{} is {} times the rate at which {} moves: check their units and that of the time; {} looks like {}.",
             &v,
             ratio,
             &x,

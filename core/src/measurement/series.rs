@@ -200,7 +200,7 @@ impl Table {
             options.mapping = record_mapping(record).parse().unwrap_or_default();
             if self.records().nth(1).is_some() {
                 notes.push(msg!(
-                    "The file holds {}: '{}' was read. A mapping reads another one.",
+                    "The file holds {}: '{}' was read. A mapping can read another one.",
                     Message::name(listed(self.records())),
                     Message::name(record)
                 ));
@@ -210,7 +210,7 @@ impl Table {
         notes.extend(note.filter(|_| options.mapping.is_empty()));
         if let Some((name, period)) = period_of(&fields, &options, &self.series) {
             notes.push(msg!(
-                "The column '{}' is taken for the sampling period, {} s.",
+                "The column '{}' is taken as the sampling period, {} s.",
                 Message::name(name),
                 period.seconds()
             ));

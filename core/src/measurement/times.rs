@@ -97,16 +97,16 @@ fn said(out: usize, runs: usize) -> Vec<Message> {
     let mut notes = Vec::new();
     if out == 1 {
         notes.push(msg!(
-            "{} row has the time of the row below it and is left out: the clock had not started.",
+            "{} row has the same time as the row below it and is left out: the clock had not started.",
             out
         ));
     } else if out > 1 {
         notes.push(msg!(
-            "{} rows have the time of the row below them and are left out: the clock had not started.", out));
+            "{} rows have the same time as the row below them and are left out: the clock had not started.", out));
     }
     if runs > 1 {
         notes.push(msg!(
-            "The time begins anew: read as {} runs one after another, with a gap between them.",
+            "The time starts over: read as {} runs one after another, with a gap between them.",
             runs
         ));
     }

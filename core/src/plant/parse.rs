@@ -78,7 +78,7 @@ pub fn parse(text: &str) -> Result<TransferFunction, ParseError> {
     if let Some(c) = parser.peek() {
         return parser.error(match c {
             ')' | '}' => msg!(
-                "'{}' closes nothing: remove it or add an opening one before",
+                "'{}' closes nothing: remove it or add an opening one before it",
                 Message::name(c)
             ),
             ',' => "',' is not understood: write decimals with a point, such as 0.5".into(),
@@ -465,10 +465,7 @@ impl Parser<'_> {
                 self.at = end;
                 Ok(Value::number(value))
             }
-            _ => self.error(msg!(
-                "'{}' is no number that can be used",
-                Message::name(text)
-            )),
+            _ => self.error(msg!("'{}' is not a usable number", Message::name(text))),
         }
     }
 

@@ -53,7 +53,7 @@ impl AnyScenario {
         if tables.servo.is_some() {
             return if others {
                 Err(ScenarioError::Form(
-                    "there is a [servo] as well; a scenario has one of both",
+                    "there is a [servo] as well; a scenario has only one of the two",
                 ))
             } else {
                 Ok(Self::Servo(Box::new(ServoScenario::from_toml(text)?)))
@@ -61,7 +61,7 @@ impl AnyScenario {
         }
         match (tables.drive, tables.plant) {
             (Some(_), Some(_)) => Err(ScenarioError::Form(
-                "there is a [drive] as well; a scenario has one of both",
+                "there is a [drive] as well; a scenario has only one of the two",
             )),
             (Some(_), None) => {
                 let file: DriveFile = toml::from_str(text).map_err(|e| located(text, &e))?;

@@ -47,7 +47,7 @@ impl RelayTable {
             None => relay,
             Some(_) if self.gain.is_some() || self.asymmetry != 0.0 || self.bias != 0.0 => {
                 return Err(ScenarioError::Levels(
-                    "levels stand in place of gain, asymmetry and bias",
+                    "levels replace gain, asymmetry and bias",
                 ));
             }
             Some([low, high]) => {

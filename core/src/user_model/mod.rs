@@ -187,14 +187,14 @@ impl UserModel {
         };
         let id = EffectId::own(&name).ok_or_else(|| {
             msg!(
-                "'{}' is no name for an effect: {}",
+                "'{}' is not a valid name for an effect: {}",
                 Message::name(&name),
                 EffectId::OWN_NAMES
             )
         })?;
         if self.find(id).is_some() {
             return Err(msg!(
-                "{} is there twice: give it another name",
+                "{} occurs twice: give it another name",
                 Message::name(name)
             ));
         }
@@ -218,7 +218,7 @@ impl UserModel {
             });
             let (symbol, value) = value.ok_or_else(|| {
                 msg!(
-                    "'{}' is no starting value: write such as {} = 0.05, with a comma before the next one",
+                    "'{}' is not a starting value: write, for example, {} = 0.05, with a comma before the next one",
                     Message::name(part.trim()),
                     Message::name(symbols.first().map_or("a", String::as_str))
                 )

@@ -42,7 +42,7 @@ impl UserModel {
             return Err(ModelFileError {
                 line: 1,
                 message: msg!(
-                    "the file is longer than {} bytes: this is no model",
+                    "the file is longer than {} bytes: this is not a model",
                     MAX_BYTES
                 ),
             });
@@ -171,7 +171,7 @@ impl Reader<'_> {
                 let present = self.effect(effect, kind, own)?;
                 if model.find(present.id).is_some() {
                     let text = msg!(
-                        "{} is there twice: once is enough",
+                        "{} occurs twice: once is enough",
                         Message::name(present.id.as_str())
                     );
                     return Err(self.error(&effect.span(), text));
@@ -214,7 +214,7 @@ impl Reader<'_> {
             .filter(|e| e.kinds().contains(&kind));
         let Some(effect) = effect else {
             let why = if name == VISCOUS_FRICTION.as_str() {
-                "viscous_friction is part of every drive: its d1 stands under [parameters]".into()
+                "viscous_friction is part of every drive: its d1 goes under [parameters]".into()
             } else {
                 msg!(
                     "no effect is called '{}'; expected {}",
@@ -268,7 +268,7 @@ impl Reader<'_> {
         let name = id.get_ref().as_str().unwrap_or("");
         let own = EffectId::own(name).ok_or_else(|| {
             let why = msg!(
-                "'{}' is no name for an effect: {}",
+                "'{}' is not a valid name for an effect: {}",
                 Message::name(shown(name)),
                 EffectId::OWN_NAMES
             );

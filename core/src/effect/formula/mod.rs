@@ -75,7 +75,7 @@ impl Formula {
         let id = EffectId::own(&self.name).ok_or_else(|| FormulaError {
             column: 1,
             message: msg!(
-                "'{}' is no name for an effect: {}",
+                "'{}' is not a valid name for an effect: {}",
                 Message::name(&self.name),
                 EffectId::OWN_NAMES
             ),
@@ -175,7 +175,7 @@ impl Effect for FormulaEffect {
     }
 
     fn sentence(&self) -> &'static str {
-        "An effect of your own: a force by a formula."
+        "An effect of your own: a force given by a formula."
     }
 
     fn equation(&self) -> &'static str {

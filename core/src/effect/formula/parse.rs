@@ -165,7 +165,7 @@ pub(super) fn parse(text: &str, kind: Kind) -> Result<(Expr, Vec<String>), Formu
     let tree = parser.sum()?;
     if let Some(c) = parser.peek() {
         return parser.fail(match c {
-            ')' => "')' closes nothing: remove it or add an opening one before".into(),
+            ')' => "')' closes nothing: remove it or add an opening one before it".into(),
             ',' => "',' is not understood: write decimals with a point, such as 0.5".into(),
             c if c.is_alphanumeric() || c == '(' => {
                 "an operator is missing here: write * for a product".into()
@@ -329,7 +329,7 @@ impl Parser<'_> {
         }
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Expr::Number(value)),
-            _ => self.fail_at(start, msg!("'{}' is no number", Message::name(text))),
+            _ => self.fail_at(start, msg!("'{}' is not a number", Message::name(text))),
         }
     }
 
@@ -353,7 +353,7 @@ impl Parser<'_> {
             return Ok(Expr::Variable(*variable));
         }
         let wrong = match (name.as_str(), self.kind) {
-            ("", _) => Some("names have letters a to z, digits and _".into()),
+            ("", _) => Some("names consist of letters a to z, digits and _".into()),
             ("e", _) => Some("write exp(...) for powers of e".into()),
             ("x" | "v", Kind::Process) => Some(msg!(
                 "a process has no {}; it has y, u and t",
@@ -394,7 +394,7 @@ impl Parser<'_> {
             return self.fail_at(
                 start,
                 msg!(
-                    "'{}' is no function; there are {}; a product needs *",
+                    "'{}' is not a function; the functions are {}; a product needs *",
                     Message::name(name),
                     Message::name(names.join(", "))
                 ),
