@@ -68,7 +68,7 @@ impl ExploreError {
             Self::Relay(error) => error.message(),
             Self::Simulate(error) => error.message(),
             Self::Lag { lag, most } => msg!(
-                "its dead time and delay are {} s, where its fastest pole allows {} s at most",
+                "its dead time and delay are {} s, but its fastest pole allows {} s at most",
                 brief(*lag),
                 brief(*most)
             ),

@@ -132,7 +132,10 @@ fn oscillates(data: &ExploreData) -> Vec<Check> {
         .map(|c| (c.period / exact.period - 1.0).abs());
     all.push(match simulated {
         Some(error) => check(
-            msg!("the simulation has its period to {} digits", digits(error)),
+            msg!(
+                "the simulation matches its period to {} digits",
+                digits(error)
+            ),
             error < SETTLED,
         ),
         None => check("the simulation settles into it".into(), false),

@@ -18,11 +18,11 @@ pub struct Arguments {
     /// Kind of system; guessed from the columns if not given
     #[arg(long, value_enum)]
     pub kind: Option<Kind>,
-    /// Which column is what: t, u, x1, v1, x2, v2 or y, its name in the file (- before it turns the sign), its
+    /// Which column is what: t, u, x1, v1, x2, v2 or y, its name in the file (- before it flips the sign), its
     /// unit; such as "t=time [ms],u=-current [A],x1=enc [counts:4096]"
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     pub map: Option<AsWritten<Mapping>>,
-    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; without it all torques stand in
+    /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; without it all torques are
     /// multiples of it
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub torque_constant: Option<AsWritten<TorqueConstant>>,
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "M.toml")]
     pub model: Option<PathBuf>,
     /// An effect of your own to be tried: a force as a formula of x, v, u, t (a process: y, u, t) with parameters
-    /// to fit, and where they start if you like: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
+    /// to fit, and optional starting values: "bump: -a*exp(-((x-b)/c)^2); b = 0.5"
     #[arg(long, value_name = "NAME: FORMULA", allow_hyphen_values = true)]
     pub effect: Vec<String>,
     /// Look for a formula of what the effects leave: an expression of x, v, u, t (a process: y, u, t) with its
@@ -122,7 +122,7 @@ impl<T: FromStr> FromStr for AsWritten<T> {
 /// The limits as written, if they can be read.
 fn limits(text: &str) -> Result<String, Message> {
     if text.trim_matches([' ', ',']).is_empty() {
-        return Err("it names no limit; expected such as input=0.5,duration=10".into());
+        return Err("no limit is named; expected something like input=0.5,duration=10".into());
     }
     let mut any = Limits {
         input: 1.0,

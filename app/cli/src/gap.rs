@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Drifting test: CSV with units in its header, such as t [s],u [N m],x1 [rad],v1 [rad/s], or a MATLAB file
     #[arg(value_name = "FILE.csv")]
     file: PathBuf,
-    /// Which column is what: t, u, x1 or v1, its name in the file (- before it turns the sign), its unit
+    /// Which column is what: t, u, x1 or v1, its name in the file (- before it flips the sign), its unit
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<Mapping>,
     /// What a current, voltage or command as input becomes, such as "0.05 N m/A"; the gap does not depend on it
@@ -156,11 +156,11 @@ fn text(
 fn silence(map: &BacklashMap, scale: f64, unit: &str) -> Message {
     match map.silence {
         Some(MapSilence::NotMoved) => {
-            "it did not move by more than its sensor can tell, so that its map shows no gap".into()
+            "it moved no more than its sensor can resolve, so that its map shows no gap".into()
         }
         Some(MapSilence::Yields { span }) => msg!(
-            "it moves within {} {} of the motor, and what joins them yields over most of that, as a shaft does: \
-             its map shows no gap",
+            "it stays within {} {} of the motor, and the coupling between them gives over most of that, as a flexible \
+             shaft does: its map shows no gap",
             fixed(scale * span, 3),
             unit.to_owned()
         ),

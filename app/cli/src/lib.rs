@@ -81,7 +81,7 @@ pub enum Command {
     Gap(gap::Arguments),
     /// Say in a second what could explain a record, by regression and without a simulation.
     Screen(screen::Arguments),
-    /// From a measured relay test, or the log of an auto-tuner, to gains: what it shows, models, and why it stalls.
+    /// Turn a measured relay test, or the log of an auto-tuner, into models and gains, and say why it stalls.
     Tune(tune::Arguments),
 }
 

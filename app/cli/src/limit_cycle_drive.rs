@@ -98,11 +98,11 @@ impl DriveReport {
         let [drift, velocity] = [cycle.drift, cycle.drift_velocity()].map(|v| digits(v, DIGITS));
         lines.push(match self.direction {
             Some(Direction::Against) => msg!(
-                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second: against the \
-                 stronger push, friction outweighs delay.", swing, share, drift, velocity),
+                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second, against the \
+                 stronger push: friction outweighs delay.", swing, share, drift, velocity),
             Some(Direction::With) => msg!(
-                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second: with the \
-                 stronger push, delay outweighs friction.", swing, share, drift, velocity),
+                "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second, with the \
+                 stronger push: delay outweighs friction.", swing, share, drift, velocity),
             _ => msg!(
                 "It swings over {} rad or m, {} % of the gap, and drifts by {} a period, {} a second.",
                 swing,

@@ -43,8 +43,8 @@ impl OnOffReport {
         let stable = |b: &&Balance| b.stable == Some(true);
         let beside = match &self.describing_function {
             None => {
-                "The describing function is not given: with three positions it is known for outputs alike in both \
-                 directions and a reference of 0."
+                "The describing function is not given: with three positions it is known only for outputs of equal \
+                 strength in both directions and a reference of 0."
                     .into()
             }
             Some(all) if all.is_empty() && self.holds => {

@@ -25,7 +25,7 @@ pub struct Arguments {
     /// Kind of system; guessed from the columns if not given
     #[arg(long, value_enum)]
     kind: Option<Kind>,
-    /// Which column is what: t, u, x1, v1 or y, its name in the file (- before it turns the sign), its unit
+    /// Which column is what: t, u, x1, v1 or y, its name in the file (- before it flips the sign), its unit
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<Mapping>,
     /// What a current, voltage or command as input becomes, such as "0.05 N m/A"
@@ -75,7 +75,7 @@ fn text(name: &str, screening: &Screening, notes: &[Message]) -> String {
     let _ = writeln!(out, "{}", say(&screening.input_check.text));
     if let Some(left) = screening.left_by_body {
         let alone = msg!(
-            "The body alone leaves {} % of the motion.",
+            "The body alone leaves {} % of the motion unexplained.",
             fixed(100.0 * left, 1)
         );
         let _ = writeln!(out, "{}", say(&alone));

@@ -125,14 +125,14 @@ pub fn read(path: &Path) -> Result<AnyScenario, Message> {
 /// How many switches there were, and why no more.
 fn switched(switches: usize, end: f64, cut: Option<Cut>) -> Vec<Message> {
     let switches = counted!(switches, "1 switch", "{} switches");
-    let mut text = vec![msg!("{} up to {} s.", switches, fixed(end, 6))];
+    let mut text = vec![msg!("{} in {} s.", switches, fixed(end, 6))];
     let why = cut.map(|cut| match cut {
-        Cut::Chattering => "The relay chatters: it switches without end, and the run was cut there.",
+        Cut::Chattering => "The relay chatters: it switches without end, and the run was stopped there.",
         Cut::TooManySwitches => {
-            "The run was cut there after as many switches as it may have: a shorter duration is run to its end."
+            "The run was stopped there, at the most switches allowed: a shorter duration runs to its end."
         }
         Cut::TooFast => {
-            "A part of the plant is far too fast for the rest: the run was cut there after millions of steps."
+            "A part of the plant is far too fast for the rest: the run was stopped there after millions of steps."
         }
     });
     text.extend(why.map(Message::from));
@@ -199,14 +199,14 @@ fn table((time, output): (&[f64], &[f64]), input: &[[f64; 2]], noise: Option<Noi
 fn drive_summary(input: &DriveInput, run: &DriveRun) -> Vec<Message> {
     let end = run.time.last().copied().unwrap_or(0.0);
     let mut text = vec![msg!(
-        "{} and {} up to {} s.",
+        "{} and {} in {} s.",
         counted!(run.switches(), "1 switch", "{} switches"),
         counted!(run.impacts(), "1 impact", "{} impacts"),
         fixed(end, 6)
     )];
     if let Some(time) = run.chattering {
         text.push(msg!(
-            "It switches without end at {} s, and the run was cut there.",
+            "At {} s it switches without end, and the run was stopped there.",
             fixed(time, 6)
         ));
     }
@@ -247,13 +247,13 @@ fn servo_summary(run: &HuntingRun, settled: &Message, noise: Option<Noise>) -> V
     let end = run.time.last().copied().unwrap_or(0.0);
     let stuck = run.stuck.iter().fold(0.0, |sum, s| sum + (s[1] - s[0]));
     let mut text = vec![msg!(
-        "The motor sticks {} up to {} s, {} s in all.",
+        "The motor sticks {} in {} s, for {} s in all.",
         counted!(run.stuck.len(), "1 time", "{} times"),
         fixed(end, 6),
         fixed(stuck, 6)
     )];
     if run.cut {
-        text.push("It runs away, and the run was cut there.".into());
+        text.push("It runs away, and the run was stopped there.".into());
     }
     say_settled(&mut text, settled, noise);
     text

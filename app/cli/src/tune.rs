@@ -38,7 +38,7 @@ pub struct Arguments {
     /// Period of the oscillation, s; of a file without a time column its sampling period, such as 4s or 250Hz
     #[arg(long, value_name = "PERIOD")]
     period: Option<String>,
-    /// Input while the relay is down and up; of a log only where it does not say it
+    /// Input while the relay is down and up; of a log only if it does not say so
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     levels: Option<Two>,
     /// Half the distance between the outputs at which the relay switches
@@ -59,7 +59,7 @@ pub struct Arguments {
     /// Drive or process; guessed from the columns if not given
     #[arg(long, value_enum)]
     kind: Option<Kind>,
-    /// Which column is what: t, u, y, its name in the file (- before it turns the sign), its unit
+    /// Which column is what: t, u, y, its name in the file (- before it flips the sign), its unit
     #[arg(long, value_name = "WHAT=COLUMN [UNIT],...")]
     map: Option<Mapping>,
     /// What a current, voltage or command as input becomes, such as "0.05 N m/A"

@@ -67,8 +67,8 @@ impl PredictError {
             Self::Plant(error) => error.message(),
             Self::Relay(error) => error.message(),
             Self::LongDelay { lag, most } => msg!(
-                "dead time and delay are {} s, where the plant's slowest time constant allows {} s at most: beyond \
-                 that they are too far apart to compute with",
+                "dead time and delay are {} s, but the plant's slowest time constant allows {} s at most: beyond that \
+                 they are too far apart to compute with",
                 brief(*lag),
                 brief(*most)
             ),
@@ -275,11 +275,11 @@ fn trust_of_none(exact: Option<&ExactCycle>, keeps_switching: bool) -> Trust {
                 let period = fixed(c.cycle.period, 4);
                 untrusted(match c.cycle.stable {
                     Some(false) => msg!(
-                        "The describing function sees no oscillation; exactly there is an unstable one of period {} \
-                         s: do not trust it here.", period),
+                        "The describing function sees no oscillation, but there is an exact one, unstable, of period \
+                         {} s: do not trust it here.", period),
                     _ => msg!(
-                        "The describing function sees no oscillation; exactly there is one of period {} s: do not \
-                         trust it here.", period),
+                        "The describing function sees no oscillation, but there is an exact one of period {} s: do \
+                         not trust it here.", period),
                 })
             }
             None if keeps_switching => untrusted(

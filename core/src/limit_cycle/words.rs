@@ -98,7 +98,7 @@ pub(super) fn sliding(since: f64, rests: bool) -> Message {
     let since = significant(since);
     let slides = if rests {
         msg!(
-            "It slides: from {} s on the relay holds the output on its threshold, and comes to rest there.",
+            "It slides: from {} s on the relay holds the output on its threshold, where it comes to rest.",
             since
         )
     } else {
@@ -154,8 +154,8 @@ pub(super) fn continuum(cycle: &OneCycle, others: Option<&[Cycle]>) -> Message {
         )
     });
     msg!(
-        "It oscillates: {}. This is one of a continuum of cycles: every start keeps its own, and the period depends on \
-         the amplitude ({}).",
+        "It oscillates: {}. This is one of a continuum of cycles: each start leads to its own, and the period depends \
+         on the amplitude ({}).",
         values(cycle),
         Message::list(", ", others)
     )
@@ -190,8 +190,8 @@ pub(super) fn irregular(cycles: &[OneCycle]) -> Message {
 pub(super) fn leaves(exact: &ExactCycle, cycles: &[OneCycle]) -> Message {
     let multiplier = exact.multiplier.unwrap_or(f64::NAN);
     msg!(
-        "It leaves the unstable cycle of {} slowly: a disturbance grows by the factor {} in each period, \
-         and after {} cycles the run has not settled.",
+        "It slowly leaves the unstable cycle of {}: a disturbance grows by a factor of {} in each period, and after \
+         {} cycles the run has not settled.",
         values(&[exact.cycle.period, exact.cycle.amplitude]),
         fixed(multiplier, 7),
         cycles.len()
@@ -252,10 +252,11 @@ pub(super) fn chatter_at_rest(switches: usize, duration: f64) -> Message {
 
 /// No run is long enough.
 pub(super) fn too_fast() -> Message {
-    "A part of the plant is far too fast for the rest: the run was cut. Leave that part out.".into()
+    "A part of the plant is far too fast for the rest: the run was stopped. Leave that part out."
+        .into()
 }
 
 /// Hardly any switch.
 pub(super) fn too_slow() -> Message {
-    "The relay has hardly switched in a very long run: what becomes of it is not seen.".into()
+    "The relay has hardly switched in a very long run: how it goes on cannot be seen.".into()
 }

@@ -147,7 +147,7 @@ fn said(simulated: Option<&OnOffCycle>, exact: Option<&OnOffCycle>) -> Message {
     let stable = match cycle.stable {
         Some(true) => "It is stable.",
         Some(false) => "It is not stable.",
-        None if exact.is_some() => "A small change of the start leads to another one beside it.",
+        None if exact.is_some() => "A small change of the start leads to a different one.",
         None => "",
     };
     msg!(

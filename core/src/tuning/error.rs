@@ -118,8 +118,8 @@ impl TuningError {
                 hysteresis
             ),
             Self::Symmetric { on, off, asymmetry } => msg!(
-                "the half periods {} s and {} s under asymmetry {} tell nothing apart: the relay must push \
-                 harder one way than the other",
+                "the half periods {} s and {} s under asymmetry {} say nothing: the relay must push harder one way \
+                 than the other",
                 digits(*on, 4),
                 digits(*off, 4),
                 asymmetry
@@ -138,8 +138,8 @@ impl TuningError {
                 fixed(*most, 4)
             ),
             Self::NotConverged { runs, gain, error } => msg!(
-                "the gain adaptation stands at gain {} with a relative amplitude error of {} after {} relay \
-                 runs: the wanted phase may be out of this plant's reach",
+                "the gain adaptation has reached gain {} with a relative amplitude error of {} after {} relay runs: \
+                 the wanted phase may be out of this plant's reach",
                 fixed(*gain, 4),
                 brief(*error),
                 runs

@@ -83,14 +83,14 @@ pub const RULES: [Rule; 10] = [
         id: "ziegler_nichols_pi",
         name: "Ziegler-Nichols PI",
         source: "Ziegler and Nichols 1942",
-        sentence: "Less than half of the ultimate gain, for a load response that decays to a quarter a swing.",
+        sentence: "Less than half of the ultimate gain, for a load response that decays to a quarter with each swing.",
         tune: |p| from_ultimate(p, 0.45, 1.0 / 1.2, None),
     },
     Rule {
         id: "ziegler_nichols_pid",
         name: "Ziegler-Nichols PID",
         source: "Ziegler and Nichols 1942",
-        sentence: "The oldest rule: fast against loads, with large overshoot and little margin.",
+        sentence: "The oldest rule: quick to reject loads, with large overshoot and little margin.",
         tune: |p| from_ultimate(p, 0.6, 0.5, Some(1.0 / 8.0)),
     },
     Rule {
@@ -111,7 +111,7 @@ pub const RULES: [Rule; 10] = [
         id: "astrom_hagglund_phase",
         name: "Åström-Hägglund, phase margin",
         source: "Åström and Hägglund 1984",
-        sentence: "Turns the ultimate point on the unit circle until the wanted phase margin is there.",
+        sentence: "Turns the ultimate point along the unit circle until the wanted phase margin is reached.",
         tune: |p| move_ultimate(p, Target::PhaseMargin(p.wish.phase_margin)),
     },
     Rule {
@@ -125,7 +125,7 @@ pub const RULES: [Rule; 10] = [
         id: "moving_point_pid",
         name: "Moving point M to S, PID",
         source: "equation (4)",
-        sentence: "Moves the point of the Nyquist curve that the relay with hysteresis showed to the target.",
+        sentence: "Moves the point of the Nyquist curve found by the relay with hysteresis to the target.",
         tune: |p| {
             let wish = &p.wish;
             moving_point::pid(&p.point, wish.target.point(), wish.time_ratio, wish.filter)
@@ -142,14 +142,14 @@ pub const RULES: [Rule; 10] = [
         id: "amigo_pi",
         name: "AMIGO PI from one asymmetric test",
         source: "Åström and Hägglund 2004; Berner, Hägglund and Åström 2016",
-        sentence: "Knows gain, lag and dead time, and keeps the sensitivity near 1.4.",
+        sentence: "Uses gain, lag and dead time, and keeps the sensitivity near 1.4.",
         tune: amigo_pi,
     },
     Rule {
         id: "amigo_pid",
         name: "AMIGO PID from one asymmetric test",
         source: "Åström and Hägglund 2004; Berner, Hägglund and Åström 2016",
-        sentence: "The same with derivative action: robust over all plants with monotone step responses.",
+        sentence: "The same with derivative action: robust for all plants with monotone step responses.",
         tune: amigo_pid,
     },
 ];

@@ -17,7 +17,7 @@ use crate::relay::Relay;
 
 /// The amplitude convention of every result.
 pub const AMPLITUDE_CONVENTION: &str =
-    "amplitude is half of peak to peak, of the output as of the relay";
+    "amplitude is half of peak to peak, for the output and for the relay";
 
 /// Ultimate gain and period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -144,12 +144,12 @@ impl StabilityLimits {
         match (&self.lower, &self.upper) {
             (None, Some(upper)) => msg!("The plant's true Ku is {} (-180°).", at(upper)),
             (Some(lower), Some(upper)) => msg!(
-                "The loop is stable between two gains only: the lower limit is {}, the upper one, the true Ku, {}.",
+                "The loop is stable only between two gains: the lower limit is {}; the upper one, the true Ku, is {}.",
                 at(lower),
                 at(upper)
             ),
             (Some(lower), None) => msg!(
-                "The loop is stable above a gain only: that lower limit is {}; there is no true Ku.",
+                "The loop is stable only above a gain of {}; there is no true Ku.",
                 at(lower)
             ),
             (None, None) => match self.without {
@@ -160,7 +160,7 @@ impl StabilityLimits {
                     "With a proportional controller no gain makes the loop stable: the plant has no true Ku."
                 }
                 Without::OnTheLimit => {
-                    "With a proportional controller every gain leaves the loop on the limit of stability: the plant \
+                    "With a proportional controller every gain leaves the loop at the limit of stability: the plant \
                      has no Ku of its own."
                 }
             }
@@ -359,7 +359,7 @@ fn gain_text(
         "the first harmonics of an asymmetric relay"
     };
     let mut text = msg!(
-        "By the relay Ku = {} ({}) at a period of {} s.",
+        "The relay gives Ku = {} ({}) at a period of {} s.",
         fixed(by_relay.gain, 4),
         formula,
         fixed(by_relay.period, 4)

@@ -42,9 +42,14 @@ impl Controller {
             Self::TwoLevels => {
                 "The relay of the textbook: it pushes with the same strength in both directions"
             }
-            Self::ThreePositions => "It heats below a dead zone, cools above it, and is off within",
+            Self::ThreePositions => {
+                "It heats below a dead zone, cools above it, and is off inside it"
+            }
             Self::OneSided => "A heater or a valve: it pushes in one direction, or not at all",
-            Self::Servo => "A servo with dry friction, cogging or play: does it hunt?",
+            Self::Servo => {
+                "A servo with dry friction, cogging or play: does it hunt, swinging about its set point \
+                            without end?"
+            }
         }
     }
 

@@ -24,7 +24,7 @@ impl Explore {
                 if bytes.len() > LONGEST {
                     return Err("it is too long for a scenario".into());
                 }
-                String::from_utf8(bytes).map_err(|_| "it is no text".into())
+                String::from_utf8(bytes).map_err(|_| "it is not text".into())
             });
             match text {
                 Ok(text) => self.reading = Some(Job::run(ctx, ScenarioTask(text))),
@@ -39,8 +39,8 @@ impl Explore {
                 self.message = None;
                 let keys = report.left_out.join(", ");
                 self.left_out = (!keys.is_empty()).then(|| {
-                    msg!("Explore shows as much as the cycle needs. Of the run in the file it leaves out: {}. The \
-                         command line has it: hysteron simulate.", Message::name(keys))
+                    msg!("Explore shows as much as the cycle needs and leaves out these settings of the run in the \
+                          file: {}. On the command line, hysteron simulate uses them.", Message::name(keys))
                 });
                 self.opened = Some(report.report);
             }

@@ -70,7 +70,7 @@ impl Theory {
             );
         });
         ui.label(tr(msg!(
-            "By (3) h = {} s; there -Hₕ(-1) = {}, and ε/k = {}: the same equation in z = -1.",
+            "By (3) h = {} s; there -Hₕ(-1) = {}, and ε/k = {}: the same equation at z = -1.",
             fixed(h, 6),
             fixed(value, 6),
             fixed(level, 6)

@@ -233,7 +233,7 @@ impl View for Maps {
 
     fn offer(&self) -> Offer<'_> {
         let hint = Hint::open(
-            "Give the plant a dead time instead of a wider relay, and see how slow it can get.",
+            "Give the plant a dead time instead of widening the hysteresis, and see how slow it can get.",
             "v1;maps;maps.across.parameter=dead_time;maps.across.from=0;maps.across.to=2",
         );
         Offer::new(hint, ["map"], || self.tables())

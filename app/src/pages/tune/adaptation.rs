@@ -29,21 +29,18 @@ fn answer(seen: Seen<'_>) -> Message {
     match &seen.report.phase_margin {
         Ok(found) => {
             let gain = number(found.adaptation.gain);
-            let (wanted, changes) = (fixed(wanted, 0), found.adaptation.steps.len() - 1);
+            let wanted = fixed(wanted, 0);
+            let changes = found.adaptation.steps.len() - 1;
+            let changes = counted!(changes, "1 change of the gain", "{} changes of the gain");
             match found.true_phase_margin {
                 Some(margin) => msg!(
-                    "K = {} for {}°, after {} changes of the gain; the true margin is {}°.",
+                    "K = {} for {}°, after {}; the true margin is {}°.",
                     gain,
                     wanted,
                     changes,
                     fixed(margin.to_degrees(), 1)
                 ),
-                None => msg!(
-                    "K = {} for {}°, after {} changes of the gain.",
-                    gain,
-                    wanted,
-                    changes
-                ),
+                None => msg!("K = {} for {}°, after {}.", gain, wanted, changes),
             }
         }
         Err(error) => msg!("No gain was found for {}°: {}.", fixed(wanted, 0), error),
@@ -57,7 +54,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     };
     let design = &found.adaptation.design;
     ui.label(tr(msg!(
-        "A relay with k = π a/4 = {} and ε = a sin φ = {} stands in series with the gain K, which is changed from \
+        "A relay with k = π a/4 = {} and ε = a sin φ = {} is placed in series with the gain K, which is changed from \
          run to run until the amplitude is a = {}. Every step squares the error, at the price of a second run.",
         number(design.gain),
         number(design.hysteresis),

@@ -1,6 +1,7 @@
 //! Step 6: the loop before and after.
 
 use egui_plot::{Line, LineStyle, MarkerShape, Points};
+use hysteron_core::counted;
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
 use hysteron_core::tuning::{LoopReport, Response, TuningReport};
@@ -232,7 +233,10 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
         };
         row("stable", &|l| match l.unstable_poles {
             0 => "yes".into(),
-            n => msg!("no: {} poles in the right half-plane", n),
+            n => msg!(
+                "no: {} in the right half-plane",
+                counted!(n, "1 pole", "{} poles")
+            ),
         });
         row("gain margin", &|l| {
             l.margins

@@ -52,10 +52,10 @@ impl Settable for Tune {
         let stage = stage.ok_or("This step of the tuning does not exist.")?;
         rule(&settings.rule).map_err(|_| "This tuning rule does not exist.")?;
         if settings.asymmetry.abs() > 0.99 {
-            return Err("The asymmetry must be -0.99 to 0.99.".into());
+            return Err("The asymmetry must be between -0.99 and 0.99.".into());
         }
         if !MARGINS.contains(&settings.phase_margin) {
-            return Err("The phase margin must be 0.01 to 1.55 rad.".into());
+            return Err("The phase margin must be between 0.01 and 1.55 rad.".into());
         }
         self.measured.take(&settings.measured)?;
         self.stage = stage;

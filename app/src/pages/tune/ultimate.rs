@@ -35,7 +35,7 @@ fn answer(seen: Seen<'_>) -> Message {
             number(truth.period)
         ),
         None => msg!("Relay estimate Ku = {}, Tu = {} s.", gain, period)
-            .and("In truth no gain makes this loop oscillate."),
+            .and("In fact, no gain makes this loop oscillate."),
     }
 }
 
@@ -164,7 +164,7 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
     let point = &seen.report.point;
     ui.label(tr(msg!(
         "The point itself, at ω = {} rad/s, is off by {} % of its size, since the describing function takes the \
-         output for a sine; by the first harmonic of the record it is exact (off by {}).",
+         output for a sine; computed from the first harmonic of the record it is exact (off by {}).",
         number(point.point.omega),
         fixed(100.0 * point.error, 1),
         significant(point.fourier_error, 1)

@@ -68,9 +68,9 @@ fn levels_off(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         )
     } else {
         msg!(
-            "The input stays {} for the last {} s while the output has reached {} and by the model \
-             goes on to {}: the relay waits for a threshold that this input cannot reach. A lower target, or a \
-             stronger input, lets it switch.",
+            "The input stays {} for the last {} s while the output has reached {} and, going by the model, heads for \
+             {}: the relay waits for a threshold that this input cannot reach. A lower target, or a stronger input, \
+             lets it switch.",
             word,
             seconds,
             reached,
@@ -97,13 +97,13 @@ fn still_moves(e: &Evidence<'_>, since: usize, up: bool) -> Option<Trouble> {
         let seconds = n(record.time[all - 1] - record.time[since]);
         let by = of_unit(slope.abs(), &record.output_unit);
         let text = if slope > 0.0 {
-            msg!("The input stays {} for the last {} s and the output still rises at the end, by {} in a \
-                 second: the record is too short to say whether the relay would switch. Let the test run on until the \
-                 output has gone round several times, or no longer rises.", word, seconds, by)
+            msg!("The input stays {} for the last {} s and the output still rises at the end, by {} in a second: the \
+                  record is too short to say whether the relay would switch. Let the test run on until the output has \
+                  gone up and down several times, or no longer rises.", word, seconds, by)
         } else {
-            msg!("The input stays {} for the last {} s and the output still falls at the end, by {} in a \
-                 second: the record is too short to say whether the relay would switch. Let the test run on until the \
-                 output has gone round several times, or no longer falls.", word, seconds, by)
+            msg!("The input stays {} for the last {} s and the output still falls at the end, by {} in a second: the \
+                  record is too short to say whether the relay would switch. Let the test run on until the output has \
+                  gone up and down several times, or no longer falls.", word, seconds, by)
         };
         trouble(TroubleKind::WindowTooShort, !e.told, slope, text)
     })
@@ -174,10 +174,10 @@ pub(super) fn stopped(record: &Record, stop: &Stop) -> Trouble {
         false,
         ends,
         msg!(
-            "After {} switches the input stays {} for the last {} s, more than two of the longest periods \
-             before, while the output, from {} to {}, does not come back to {} where the relay switched: from {} s on \
-             the input no longer acts on the plant as it did, or something else does. What is told here is of the \
-             record before.",
+            "After {} switches the input stays {} for the last {} s, more than two of the longest periods before, \
+             while the output, from {} to {}, does not come back to {} where the relay switched: from {} s on the \
+             input no longer acts on the plant as it did, or something else does. What is said here applies to the \
+             record before that.",
             stop.switches,
             word,
             seconds,

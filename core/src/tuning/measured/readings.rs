@@ -186,17 +186,17 @@ impl Readings {
                 up.min(down) / up.max(down),
                 msg!(
                     "The half periods of {} s and {} s differ: 4d/(πa) does not hold for such a cycle. Lags with dead \
-                     time that have this very cycle lie all over the error of the point; the record of the test \
-                     narrows it.",
+                     time that have this very cycle are spread all over the error of the point; the record of the \
+                     test would narrow it down.",
                     number(up),
                     number(down)
                 ),
             ),
             None if self.unequal => (
                 UNEQUAL,
-                "The half periods are known to differ, but not by how much: without them amplitude and period do not \
-                 tell the phase of the cycle, so no point and no gains follow. Give the times up and down, or the \
-                 record of the test."
+                "The half periods are known to differ, but not by how much: without them, amplitude and period do not \
+                 determine the phase of the cycle, so neither a point nor gains follow. Give the times up and down, \
+                 or the record of the test."
                     .into(),
             ),
             _ => return None,
@@ -268,11 +268,12 @@ pub fn tune_readings(
     };
     if readings.half_periods.is_none() && !readings.unequal {
         result.notes.push(
-            "The half periods were taken as equal; where they are not, give them: the point is another then.".into(),
+            "The half periods were taken as equal; if they are not, give them: the point is then a different \
+             one.".into(),
         );
     }
     result.notes.push(
-        "From numbers alone the waveform is not known: the errors are those of not knowing it. The record of the test \
+        "From numbers alone the waveform is not known: the errors come from not knowing it. The record of the test \
          tells more, and gives models."
             .into(),
     );

@@ -76,7 +76,7 @@ impl RecordError {
                 FEWEST
             ),
             Self::Lengths(first, second, third) => msg!(
-                "time, input and output have {}, {} and {} values: they must be as many",
+                "time, input and output have {}, {} and {} values: they must have equally many",
                 first,
                 second,
                 third
@@ -90,8 +90,8 @@ impl RecordError {
                 given
             ),
             Self::NoInput(given) => msg!(
-                "the input is {} from the first sample to the last: a test needs an input that changes, so record \
-                 what the heater or valve was told as well",
+                "the input is {} from the first sample to the last: a test needs an input that changes, so also \
+                 record the command to the heater or valve",
                 given
             ),
             Self::NeverSwitched { input, from, to } => msg!(

@@ -347,7 +347,8 @@ impl MeasuredTuning {
     fn of_turned(&self) -> Option<Message> {
         let point = self.point.filter(|p| self.sign() < 0.0 && p.is_known())?;
         Some(msg!(
-            "Its gain is negative: with the input turned, as its controller turns it, the phase is {} degrees.",
+            "Its gain is negative: with the sign of the input flipped, as its controller flips it, the phase is {} \
+             degrees.",
             number(point.turned().phase_deg)
         ))
     }

@@ -122,12 +122,12 @@ fn noise(e: &Evidence<'_>, cycle: &Cycle) -> Option<Trouble> {
             n(cycle.hysteresis.max(0.0)),
         );
         let text = if flickers > FLICKERS {
-            msg!("The relay flickers {} times at each switch: the noise ({}) is of the size of the hysteresis \
-                 ({}). Three times the noise as hysteresis, or a filter, ends it.", n(flickers), noise, hysteresis)
+            msg!("The relay flickers {} times at each switch: the noise ({}) is about as large as the hysteresis \
+                  ({}). A hysteresis of three times the noise, or a filter, ends it.", n(flickers), noise, hysteresis)
         } else {
             msg!(
-                "The relay flickers {} in {} half periods: the noise ({}) is of the size of the hysteresis ({}). \
-                 Three times the noise as hysteresis, or a filter, ends it.",
+                "The relay flickers {} in {} half periods: the noise ({}) is about as large as the hysteresis ({}). A \
+                 hysteresis of three times the noise, or a filter, ends it.",
                 counted!(cycle.flicker, "1 time", "{} times"),
                 n(half_periods),
                 noise,
@@ -162,8 +162,9 @@ fn chatter(e: &Evidence<'_>, cycle: &Cycle) -> Trouble {
         true,
         level,
         msg!(
-            "Noise switches the relay, every {} s on average and at random: the noise ({}) is not small beside the \
-             hysteresis ({}), so there is no cycle to read. Three times the noise as hysteresis, or a filter, ends it.",
+            "Noise switches the relay, every {} s on average and at random: the noise ({}) is not small compared with \
+             the hysteresis ({}), so there is no cycle to read. A hysteresis of three times the noise, or a filter, \
+             ends it.",
             n(0.5 * cycle.period),
             of_unit(level, &e.record.output_unit),
             n(cycle.hysteresis.max(0.0))
@@ -246,8 +247,8 @@ fn without_cycle(e: &Evidence<'_>) -> Vec<Option<Trouble>> {
             false,
             high - low,
             msg!(
-                "The input takes values all over {} to {}: this is no relay test, so there is no cycle to read; the \
-                 models are fitted to the record as it is.",
+                "The input takes values all the way from {} to {}: this is not a relay test, so there is no cycle to \
+                 read; the models are fitted to the record as it is.",
                 n(low),
                 n(high)
             ),
@@ -291,8 +292,8 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
     if explained > FOLLOWS {
         let slope = uy / yy;
         let text = msg!(
-            "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work and the \
-             models below are as much of it as of the plant. Record a step or a relay test with the controller off.",
+            "The input follows the output: u = {} y + {} explains {} % of it, so a controller was at work, and the \
+             models below describe it as much as the plant. Record a step or a relay test with the controller off.",
             n(slope),
             n(u0 - slope * y0),
             n(100.0 * explained)
@@ -308,8 +309,8 @@ pub(super) fn of_controller(record: &Record) -> Option<Trouble> {
         place: &[],
     })?;
     let text = msg!(
-        "A {} controller made the input, {}: this is no relay test. Where its set point or its limits moved the input, \
-         the models are those of the plant.",
+        "A {} controller made the input, {}: this is not a relay test. Where its set point or its limits moved the \
+         input, the models are those of the plant.",
         made.kind,
         made.law
     );
@@ -337,12 +338,12 @@ fn too_short(e: &Evidence<'_>) -> Option<Trouble> {
             counted!(rounds, "1 time", "{} times"),
         );
         let text = if e.told {
-            msg!("In {} s the input switches {} and the output goes round {}: there is no cycle to \
-                 read, for which at least {} whole periods after the first are needed; what is told here \
-                 is by the models, fitted to the record as it is.", seconds, switched, went, WHOLE_PERIODS)
+            msg!("In {} s the input switches {} and the output goes up and down {}: there is no cycle to read, since \
+                  at least {} whole periods after the first are needed; what is said here comes from the models, \
+                  fitted to the record as it is.", seconds, switched, went, WHOLE_PERIODS)
         } else {
-            msg!("In {} s the input switches {} and the output goes round {}: the window is too \
-                 short, at least {} whole periods after the first are needed.", seconds, switched, went, WHOLE_PERIODS)
+            msg!("In {} s the input switches {} and the output goes up and down {}: the window is too short, at least \
+                  {} whole periods after the first are needed.", seconds, switched, went, WHOLE_PERIODS)
         };
         trouble(TroubleKind::WindowTooShort, !e.told, rounds as f64, text)
     })

@@ -152,7 +152,7 @@ impl Controls {
         if controller == Controller::ThreePositions {
             let zone = &mut set.dead_zone;
             slider(ui, zone, usual.dead_zone, 1.0, 0.0..=output, "dead zone d").on_hover_text(tr(
-                "It is off while the output is nearer than this to the reference",
+                "It is off while the output is closer than this to the reference",
             ));
             slider(
                 ui,
@@ -162,7 +162,7 @@ impl Controls {
                 -2.0 * output..=2.0 * output,
                 "output at the start",
             )
-            .on_hover_text(tr("Where the output stands when the relay is switched on"));
+            .on_hover_text(tr("Where the output is when the relay is switched on"));
         }
         if controller != Controller::OneSided {
             asymmetry_slider(ui, &mut relay.asymmetry, 0.0);

@@ -182,7 +182,7 @@ fn lasting(cycle: &OnOffCycle) -> Option<Message> {
     let Some(stable) = cycle.stable else {
         return cycle
             .multiplier
-            .map(|_| "Another start leads to another cycle beside this one.".into());
+            .map(|_| "A different start leads to a different cycle.".into());
     };
     let rate = cycle.multiplier?;
     let percent = hysteron_core::explore::percent(rate);

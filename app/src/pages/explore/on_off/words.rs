@@ -74,7 +74,7 @@ pub fn reasons(input: &OnOffInput, data: &OnOffData) -> Vec<Message> {
 fn exactly(input: &OnOffInput, data: &OnOffData) -> Message {
     let Some(cycle) = &data.exact else {
         return if data.simulated.is_some() {
-            "The simulation repeats itself, but no exact cycle was found beside it."
+            "The simulation repeats itself, but no exact cycle was found to match it."
         } else {
             "There is no exact cycle to compare with: no pattern of up to 24 switches repeats."
         }

@@ -146,7 +146,7 @@ impl Hunting {
             }
             Verdict::StopsShort => {
                 next.integral = usual.integral;
-                "Give it an integral: does it come to where it should be?"
+                "Give it an integral: does it reach its set point?"
             }
             Verdict::Settles => {
                 next.half_gap = 0.02;

@@ -111,7 +111,7 @@ fn cause(servo: &Servo, data: &HuntingData) -> Option<Message> {
         Verdict::StopsShort => Some(
             "Dry friction holds it there: the controller asks for less than it takes to break away.".into(),
         ),
-        Verdict::Settles if integral => Some("The integral has taken the error away.".into()),
+        Verdict::Settles if integral => Some("The integral has removed the error.".into()),
         _ => None,
     }
 }
@@ -121,7 +121,7 @@ fn lasting(cycle: &HuntingCycle) -> Option<Message> {
     let percent = hysteron_core::explore::percent(cycle.multiplier?);
     Some(if cycle.stable? {
         msg!(
-            "It goes on for ever: a small disturbance shrinks to {} in one period.",
+            "The hunting is stable: a small disturbance shrinks to {} in one period.",
             percent
         )
     } else {

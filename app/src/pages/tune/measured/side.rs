@@ -136,8 +136,8 @@ impl Measured {
             readings.half_periods = differ.then_some([0.5 * readings.period; 2]);
         }
         ui.small(tr("The hysteresis is half the distance between the outputs at which the relay switches. Tuners \
-                     differ in what they call amplitude: two much-used ones come to an ultimate gain that is twice too \
-                     large."));
+                     differ in what they call amplitude: two widely used ones arrive at an ultimate gain twice as \
+                     large as it should be."));
     }
 
     fn wishes_ui(&mut self, ui: &mut egui::Ui) {

@@ -63,10 +63,10 @@ pub(super) fn read(name: &str, text: &str) -> Result<(Held, Levels, Settings), L
         .map(|r| (r, Levels::Told))
         .or_else(|| Some((of_gains(text)?, Levels::AssumedByGain)))
         .ok_or(LogError::Garbled(Source::Klipper))?;
-    let note = "Klipper switches 5 degrees below the target and at it: with this hysteresis its cycle is not at the \
-                ultimate point. Its formula leaves that out and takes the full power for half of the relay's swing, so \
-                that its ultimate gain is twice 4d/(πa). PID_CALIBRATE with WRITE_FILE=1 leaves /tmp/heattest.txt, \
-                which tells more.";
+    let note = "Klipper switches 5 degrees below the target and at the target itself: with this hysteresis its cycle \
+                is not at the ultimate point. Its formula ignores that and counts the full power as half of the \
+                relay's swing, so that its ultimate gain is twice 4d/(πa). PID_CALIBRATE with WRITE_FILE=1 leaves \
+                /tmp/heattest.txt, which tells more.";
     Ok((
         Held::Readings(readings),
         levels,

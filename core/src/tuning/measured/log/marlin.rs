@@ -24,17 +24,17 @@ const HEATERS: [[&str; 2]; 2] = [["T:", "@:"], ["B:", "B@:"]];
 const FAILURES: [(&str, &str); 3] = [
     (
         "Temperature too high",
-        "the temperature passed the target by more than 20 to 30 degrees: the heater is far stronger than needed or \
-         the sensor comes late; tune at a lower power, or at a target nearer to the one in use",
+        "the temperature passed the target by more than 20 to 30 degrees: the heater is far stronger than needed, or \
+         the sensor responds late; tune at a lower power, or at a target nearer to the one in use",
     ),
     (
         "timeout",
-        "no cycle came to its end within 20 minutes: the target is beyond what the heater reaches, or the plant cools \
+        "no cycle was completed within 20 minutes: the target is beyond what the heater reaches, or the plant cools \
          too slowly; choose a lower target or a stronger heater",
     ),
     (
         "Bad heater id",
-        "there is no heater of this number; E0 is the first hot end, E-1 the bed",
+        "there is no heater with this number; E0 is the first hot end, E-1 the bed",
     ),
 ];
 

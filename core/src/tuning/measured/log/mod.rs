@@ -120,8 +120,8 @@ impl Log {
         if let (Held::Readings(readings), true) = (&self.held, self.levels != Levels::Told) {
             let [low, high] = readings.levels.map(number);
             settings.notes.push(msg!(
-                "The log does not say the levels of the input: {} and {} were assumed, and every gain is in \
-                 proportion to them; give --levels where they are others.",
+                "The log does not give the levels of the input: {} and {} were assumed, and every gain is in \
+                 proportion to them; give --levels if they are different.",
                 low,
                 high
             ));

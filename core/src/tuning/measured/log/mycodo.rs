@@ -30,23 +30,24 @@ pub(super) fn read(text: &str) -> Result<(Held, Levels, Settings), LogError> {
     {
         return Err(LogError::Failed(
             line.trim().chars().take(120).collect(),
-            "the amplitude did not settle within 20 peaks: less noise, a larger output step, or a longer look-back \
-             lets it",
+            "the amplitude did not settle within 20 peaks: less noise, a larger output step or a longer look-back \
+             helps",
         ));
     }
     let mut notes = vec![
-        "The tuner takes its output step for half the relay's swing; where the output cannot go below 0 it switches \
+        "The tuner counts its output step as half the relay's swing; where the output cannot go below 0, it switches \
          between 0 and the step, and its ultimate gain comes out twice as large as it should be."
             .into(),
-        "Its rules divide by twentieths (34, 40, 160 for 1.7, 2, 8): Kp comes out 20 times and Kd 400 times too small."
+        "Its rules divide by numbers 20 times too large (34, 40, 160 instead of 1.7, 2, 8): Kp comes out 20 times too \
+         small and Kd 400 times."
             .into(),
     ];
     let (readings, levels) = if let Some(found) = found(text) {
         found
     } else {
         notes.push(msg!("The amplitude was computed from the gains in the log, and the noise band taken as {}, the \
-             tuner's default; give --hysteresis where another was set. At log level DEBUG the log has the peaks and \
-             the times.", NOISEBAND));
+                         tuner's default; give --hysteresis if another was set. At log level DEBUG the log has the \
+                         peaks and the times.", NOISEBAND));
         of_gains(text).ok_or(LogError::Garbled(Source::Mycodo))?
     };
     let settings = Settings {

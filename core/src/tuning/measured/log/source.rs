@@ -84,7 +84,7 @@ impl LogError {
             ),
             Self::Unfinished(given) => msg!("the log ends before the result: {}", given),
             Self::Levels => {
-                "levels are for numbers, and for a log that does not say them: leave --levels out"
+                "levels are for numbers, and for a log that does not give them: leave --levels out"
                     .into()
             }
             Self::Failed(first, second) => {
