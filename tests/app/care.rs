@@ -433,7 +433,7 @@ fn backlash_points_to_the_page_that_asks_for_columns() {
     finish(&mut harness);
     let texts = texts(&harness);
     let german =
-        |t: &String| t.contains("eine Datei von MATLAB sagt nicht") && t.contains("Vergleichen");
+        |t: &String| t.contains("eine MATLAB-Datei sagt nicht") && t.contains("Vergleichen");
     assert!(texts.iter().any(german), "{texts:#?}");
 }
 

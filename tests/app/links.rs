@@ -339,8 +339,8 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
     let before = state(&harness)["link"].clone();
     let ctx = harness.ctx.clone();
     for (text, reason) in [
-        ("", "no link to Hysteron"),
-        ("<script>alert(1)</script>", "no link to Hysteron"),
+        ("", "not a link to Hysteron"),
+        ("<script>alert(1)</script>", "not a link to Hysteron"),
         ("v2;explore", "version v2"),
         ("v1;nowhere", "a page that does not exist"),
         ("v1;explore;loop.relay.gian=2", "loop.relay.gian"),

@@ -425,7 +425,7 @@ fn a_wrong_mapping_says_so_and_can_be_mended() {
     choose(&mut harness, "Velocity", "log(:,3)");
     choose(&mut harness, "Unit of the velocity", "rad/s");
     click(&mut harness, "Open it");
-    said(&harness, "'log(:,3)' stands in the mapping twice");
+    said(&harness, "'log(:,3)' appears in the mapping twice");
     choose(&mut harness, "Velocity", "none");
     choose(&mut harness, "Unit of the position", "mm");
     click(&mut harness, "Open it");

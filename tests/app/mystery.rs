@@ -173,7 +173,7 @@ fn a_student_adds_what_is_hidden_and_gets_the_points() {
 }
 
 fn harness_refuses_without_a_word(teacher: &mut App) {
-    teacher.get_by_label_contains("The password needs 6 letters");
+    teacher.get_by_label_contains("The password needs at least 6 characters");
     click(teacher, "Make the mystery");
     assert_eq!(state(teacher)["mystery"]["made"], Value::Null);
 }

@@ -223,7 +223,7 @@ fn columns_are_mapped_and_what_was_assumed_is_said() {
         free["notes"][0]
             .as_str()
             .unwrap()
-            .contains("1 N m/A is taken")
+            .contains("1 N m/A is assumed")
     );
     assert!(known.get("notes").is_none());
     // Twice the inertia if nothing is said of a constant of a half.
@@ -232,7 +232,7 @@ fn columns_are_mapped_and_what_was_assumed_is_said() {
     let text = diagnose(&[&file], &["--map", map]).stdout;
     let text = String::from_utf8(text).unwrap();
     assert!(
-        text.contains("  - The torque constant is not known: 1 N m/A is taken."),
+        text.contains("  - The torque constant is not known: 1 N m/A is assumed."),
         "{text}"
     );
     for (arguments, expected) in [

@@ -247,7 +247,7 @@ fn one_switch_is_no_plural() {
     let loop_ = "[plant]\nformula = \"1/(s+1)^3\"\n[relay]\ngain = 1\nhysteresis = 0.1\n[run]\n";
     std::fs::write(&path, format!("{loop_}duration = 2.0\n")).unwrap();
     let said = text(&hysteron("simulate", &path, &[]));
-    assert!(said.starts_with("1 switch up to "), "{said}");
+    assert!(said.starts_with("1 switch in "), "{said}");
 }
 
 #[test]

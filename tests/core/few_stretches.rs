@@ -52,7 +52,7 @@ fn a_load_that_swings_once_or_twice_is_no_effect() {
         d.verdict.text
     );
     assert!(
-        d.verdict.text.to_string().contains("wanders slowly"),
+        d.verdict.text.to_string().contains("drifts slowly"),
         "{}",
         d.verdict.text
     );

@@ -407,7 +407,7 @@ fn beside_a_set_point_the_output_may_be_that_of_a_controller() {
         let said = m
             .warnings
             .iter()
-            .any(|w| w.to_string().contains("what a controller put out"));
+            .any(|w| w.to_string().contains("the output of a controller"));
         assert_eq!(said, input == "output", "{header}: {:?}", m.warnings);
     }
     // As the plotter of a microcontroller has it.
@@ -590,7 +590,7 @@ fn what_only_one_column_can_be_it_is() {
         let taken = m
             .warnings
             .iter()
-            .filter(|w| w.to_string().contains("is taken for the"));
+            .filter(|w| w.to_string().contains("is taken as the"));
         assert!(taken.count() > 0, "{header}: {:?}", m.warnings);
     }
     let m = import(&log("time_ms,heater_pwm,Temperature,note"));
@@ -797,7 +797,7 @@ fn bad_values_are_named_with_their_place() {
             "line 7",
             "column 1 (t)",
             "does not increase",
-            "4 s stands in two rows",
+            "4 s appears in two rows",
         ],
     );
     refused(&with_row_5("3.5,2,2,2"), &["line 7", "3.5 s after 4 s"]);

@@ -120,7 +120,7 @@ fn a_torque_constant_that_is_not_known_is_one_and_that_is_said() {
     let m = read(FLAT, RIG, None);
     is_the_rig(&m, 1.0);
     assert_eq!(notes(&m).len(), 1);
-    assert!(notes(&m)[0].contains("1 N m/A is taken") && notes(&m)[0].contains("multiples"));
+    assert!(notes(&m)[0].contains("1 N m/A is assumed") && notes(&m)[0].contains("multiples"));
     // A linear motor: what moves in metres is pushed by a force.
     let slide = "t=time [ms],u=current [A],x1=enc [counts, 0.001 mm]";
     let m = read(FLAT, slide, None);
@@ -128,7 +128,7 @@ fn a_torque_constant_that_is_not_known_is_one_and_that_is_said() {
         (m.motion(), m.input.unit.as_str()),
         (Motion::Translational, "N")
     );
-    assert!(notes(&m)[0].contains("1 N/A is taken"));
+    assert!(notes(&m)[0].contains("1 N/A is assumed"));
     // A voltage brings the back-EMF, known constant or not.
     let voltage = RIG.replace("[A]", "[V]");
     assert_eq!(notes(&read(FLAT, &voltage, None)).len(), 2);
@@ -149,7 +149,7 @@ fn a_command_is_an_input_of_unknown_scale() {
         let m = read(FLAT, &RIG.replace("[A]", &format!("[{unit}]")), None);
         is_the_rig(&m, 1.0);
         assert_eq!(m.input.unit, "N m", "{unit}");
-        assert!(notes(&m)[0].contains(&format!("1 N m/{shown} is taken")));
+        assert!(notes(&m)[0].contains(&format!("1 N m/{shown} is assumed")));
         assert!(notes(&m).len() == 2 && notes(&m)[1].contains("is a command"));
     }
     let command = RIG.replace("[A]", "[%]");
@@ -358,8 +358,8 @@ fn a_mapping_or_constant_that_makes_no_sense_is_refused() {
     assert!(mapping("what=enc [rad]").contains("'what' is none of t, u, x1"));
     // A name that a column may have, on the wrong side.
     assert!(mapping("q=u").contains("'q' is none of t, u, x1"));
-    assert!(mapping("x1=a [rad],x1=b [rad]").contains("'x1' stands in the mapping twice"));
-    assert!(mapping("x1=a [rad],v1=a [rpm]").contains("'a' stands in the mapping twice"));
+    assert!(mapping("x1=a [rad],x1=b [rad]").contains("'x1' appears in the mapping twice"));
+    assert!(mapping("x1=a [rad],v1=a [rpm]").contains("'a' appears in the mapping twice"));
     for wrong in [
         "",
         "5",

@@ -391,7 +391,10 @@ fn a_plant_of_negative_gain_is_the_same_loop_with_the_input_turned() {
     let turned = format!("the phase is {:.1}", heats.point.unwrap().phase_deg);
     assert!(
         cools.text.to_string().contains(&turned)
-            && cools.text.to_string().contains("with the input turned"),
+            && cools
+                .text
+                .to_string()
+                .contains("with the sign of the input flipped"),
         "{}",
         cools.text
     );

@@ -59,7 +59,7 @@ fn a_loop_that_comes_to_rest_or_slides() {
         Outcome::Rest,
         "goes to 1.000",
     );
-    check(lag, "gain = 1", Outcome::Sliding, "comes to rest there");
+    check(lag, "gain = 1", Outcome::Sliding, "where it comes to rest");
     // Relative degree two: the switches have a limit.
     check(
         "formula = \"1/(s*(s+1))\"",
@@ -183,10 +183,14 @@ fn loops_of_an_independent_check_end_as_it_says() {
         (
             "h21_dintegr",
             Outcome::Continuum,
-            "every start keeps its own",
+            "each start leads to its own",
         ),
         ("h05_zerogain", Outcome::Rest, "cycles to get there"),
-        ("a20_sliding_CB2", Outcome::Sliding, "comes to rest there"),
+        (
+            "a20_sliding_CB2",
+            Outcome::Sliding,
+            "where it comes to rest",
+        ),
         ("h03_condstable", Outcome::Sliding, "slides"),
         ("fig-4-noise", Outcome::NoisyLimitCycle, "in the noise"),
         ("noise1", Outcome::Chatter, "chatters"),
@@ -267,7 +271,7 @@ fn a_loop_without_limits_of_stability_is_said_to_be_what_it_is_at_every_gain() {
         ("s/(s^2+0.1s+1)", "stable at every gain"),
         ("1/((s^2+1)*(s+1))", "no gain makes the loop stable"),
         ("1/(s^2-0.2s+1)", "no gain makes the loop stable"),
-        ("1/s^2", "on the limit of stability"),
+        ("1/s^2", "at the limit of stability"),
     ] {
         let text = format!("[plant]\nformula = \"{formula}\"\n[relay]\ngain = 1\n");
         let plant = Scenario::from_toml(&text).unwrap().plant;

@@ -141,7 +141,7 @@ fn what_is_wrong_in_a_formula_is_said_with_its_column() {
     refused("-a*x)", 5, &["closes nothing"]);
     refused("a x", 3, &["write *"]);
     refused("2a", 2, &["write *"]);
-    refused("a(x-1)", 1, &["'a' is no function", "sin", "*"]);
+    refused("a(x-1)", 1, &["'a' is not a function", "sin", "*"]);
     refused("a*sin", 3, &["write sin(...)"]);
     refused("a*min(x)", 3, &["2 argument"]);
     refused("a*e^x", 3, &["exp(...)"]);
@@ -174,7 +174,11 @@ fn what_is_wrong_with_a_candidate_is_said() {
     let mut model = UserModel::blank(Kind::Drive);
     model.add_candidate("cogging: a*x").unwrap();
     assert_eq!(model.candidates[0].id.as_str(), "own_cogging");
-    assert!(said("Bump!: a*x").to_string().contains("small letters"));
+    assert!(
+        said("Bump!: a*x")
+            .to_string()
+            .contains("lower-case letters")
+    );
     assert!(said("bump: a*(x").to_string().contains("column 5"));
     assert!(said("bump: a*x; k = 3").to_string().contains("a = 0.05"));
     let twice = said("bump: a*x + b; a = 0.8; b = 0.3");

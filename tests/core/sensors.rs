@@ -78,7 +78,7 @@ fn noise_that_remembers_is_no_missing_effect_and_hides_none() {
         // A share of 0.6 makes neighbours differ by less than their noise is.
         assert!(d.noise_floor > 1.15, "{}", d.noise_floor);
         assert!(
-            d.verdict.text.to_string().contains("remembers"),
+            d.verdict.text.to_string().contains("is correlated"),
             "{}",
             d.verdict.text
         );
@@ -92,7 +92,7 @@ fn white_noise_has_a_floor_of_one() {
     check(&d, &[]);
     assert!((d.noise_floor - 1.0).abs() < f64::EPSILON);
     assert!(
-        !d.verdict.text.to_string().contains("remembers"),
+        !d.verdict.text.to_string().contains("is correlated"),
         "{}",
         d.verdict.text
     );
@@ -119,7 +119,7 @@ fn single_values_that_jump_are_left_out_and_said() {
         for (place, jump) in [(700, 40.0), (2900, -25.0), (2990, 300.0), (6100, 15.0)] {
             record.outputs[0].values[place] += jump * NOISE;
         }
-        check_said(&record, &missing, "4 values stood alone");
+        check_said(&record, &missing, "4 outliers");
     }
 }
 
@@ -144,7 +144,7 @@ fn two_values_in_a_row_beyond_all_others_are_left_out_and_said() {
         let highest = values.iter().fold(0.0_f64, |high, v| high.max(*v));
         values[3100] = 2.0 * highest;
         values[3101] = 2.1 * highest;
-        check_said(&record, &missing, "2 values stood alone");
+        check_said(&record, &missing, "2 outliers");
     }
 }
 

@@ -75,7 +75,7 @@ fn a_value_fixed_wrongly_is_kept_and_said() {
     assert!((c.wanted / 8.8e-4 - 1.0).abs() < 1e-3, "{c:?}");
     assert!(c.error < 1.2 && d.steps[0].error > 10.0);
     assert!(
-        d.verdict.text.to_string().contains("holds J1"),
+        d.verdict.text.to_string().contains("given J1"),
         "{}",
         d.verdict.text
     );
@@ -117,7 +117,7 @@ fn a_value_that_the_data_overrule_is_said_though_all_is_explained() {
     };
     assert!((c.wanted / 8.8e-4 - 1.0).abs() < 1e-3, "{c:?}");
     assert!(
-        d.verdict.text.to_string().contains("holds J1"),
+        d.verdict.text.to_string().contains("given J1"),
         "{}",
         d.verdict.text
     );
@@ -374,7 +374,7 @@ fn what_is_wrong_in_a_file_is_said_with_its_line() {
         &["'b'", "expected a"],
     );
     let taken = own.replace("bump", "cogging") + "formula = \"a*x\"\n";
-    refused(&taken, 3, &["not a name of the library"]);
+    refused(&taken, 3, &["not a name from the library"]);
     refused("kind = \"drive\"\neffects = 3\n", 2, &["[[effects]]"]);
     refused("kind = \"drive\"\nkind = \"drive\"\n", 2, &[]);
     refused("kind = [[[[[[[[\n", 1, &[]);

@@ -284,7 +284,7 @@ mod tests {
             finding
                 .text
                 .to_string()
-                .contains("those where the position is between -0.0")
+                .contains(" of samples where the position is between -0.0")
                 && finding.text.to_string().ends_with(" rad."),
             "{}",
             finding.text

@@ -204,12 +204,12 @@ mod tests {
         assert!(
             text(0.06)
                 .to_string()
-                .contains("by 0.060, 0.4 % of its square;")
+                .contains("is 0.060 (0.4 % of its square);")
         );
         assert!(
             text(-0.709)
                 .to_string()
-                .contains("by -0.709, 50 % of its square;")
+                .contains("is -0.709 (50 % of its square);")
         );
         assert!(text(0.03).to_string().contains(" is white"));
     }

@@ -183,7 +183,7 @@ pub(super) fn add_rest(
                      controller that is faster than the record: {} times the noise.", fixed(error, 2))
             });
             verdict.text.add(
-                "It wanders like a random walk, and depends neither on the motion nor on the input.",
+                "That effect wanders like a random walk, and depends neither on the motion nor on the input.",
             );
             return;
         }

@@ -143,7 +143,7 @@ mod tests {
         for (factor, part) in [
             (
                 180.0 / std::f64::consts::PI,
-                "57.3 times the rate at which x1 moves: check their units and that of the time, v1 looks like degrees.",
+                "57.3 times the rate at which x1 moves: check their units and that of the time; v1 looks like degrees.",
             ),
             (std::f64::consts::TAU, "x1 looks like revolutions."),
             (

@@ -144,7 +144,7 @@ mod tests {
         assert!(
             said.notes[0]
                 .to_string()
-                .starts_with("2 rows have the time")
+                .starts_with("2 rows have the same time")
         );
         let mut values: Vec<f64> = (0..62).map(f64::from).collect();
         leave_out(&mut values, &said.out);
