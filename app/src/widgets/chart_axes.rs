@@ -53,10 +53,14 @@ pub(super) fn title(axis: &Message, scale: &Scale) -> Message {
     titled(name, &scale.unit)
 }
 
-/// What an axis is called, with its unit apart: it is read in one that suits its values.
+/// What an axis is called, with its unit apart: it is read in one that suits its values. Multiples of something are said
+/// with what they are multiples of.
 pub(super) fn named(axis: Message) -> Message {
     let apart = |text: &str| {
         let (name, unit) = text.strip_suffix(']')?.rsplit_once(" [")?;
+        if unit.starts_with('×') {
+            return None;
+        }
         let name = Message::words(name.to_owned());
         Some(msg!("{} [{}]", name, unit.to_owned()))
     };
