@@ -22,10 +22,22 @@ impl Compare {
 
     /// Buys a hint for the model on screen.
     pub(super) fn buy_hint(&mut self) {
-        let effects = self.shown.as_ref().map_or(0, Vec::len);
-        if self.guess.hints(effects) < LEFT.len() {
-            self.guess.bought.push(effects);
+        self.guess.buy(report_effects(self));
+    }
+
+    /// Who has the ranking of a mystery shown was given all hints for the model on screen: it says no less.
+    pub(super) fn pay_for_ranking(&mut self) {
+        let open = self.report().is_some_and(|r| r.suggestion.is_some());
+        let sealed = self.sealed.as_ref().is_some_and(|s| !s.is_revealed());
+        if open && sealed && !self.guess_first {
+            LEFT.iter().for_each(|_| self.buy_hint());
         }
+    }
+
+    /// What the revealed truth gives, less what hints have cost.
+    pub(super) fn points(&self) -> Option<f64> {
+        let (_, reveal) = self.sealed.as_ref()?.revealed.as_ref()?;
+        Some((reveal.points() - f64::from(self.guess.cost())).max(0.0))
     }
 
     /// What may be missing, by name: all that was tried, or what hints have left.
@@ -87,10 +99,6 @@ impl Compare {
         if buy.clicked() {
             commands.push(Command::Hint);
         }
-        let cost = self.guess.cost();
-        if cost > 0 {
-            ui.label(tr(msg!("Hints have cost {} points so far.", cost)));
-        }
     }
 
     /// Turns guessing on and off.
@@ -101,12 +109,21 @@ impl Compare {
         commands: &mut Vec<Command>,
     ) {
         let mut first = self.guess_first;
+        let hint = if self.sealed.is_some() {
+            "Hides which effect helps most until you have found it; in a mystery, to see it costs as much as all hints"
+        } else {
+            "Hides which effect helps most until you have found it"
+        };
         let toggle = ui
             .checkbox(&mut first, tr("Guess first"))
-            .on_hover_text(tr("Hides which effect helps most until you have found it"));
+            .on_hover_text(tr(hint));
         targets.note("guess", ui, &toggle);
         if toggle.changed() {
             commands.push(Command::GuessFirst(first));
+        }
+        let cost = self.guess.cost();
+        if cost > 0 {
+            ui.label(tr(msg!("Hints have cost {} points so far.", cost)));
         }
     }
 }

@@ -19,6 +19,13 @@ impl Guess {
         PRICE * self.bought.len() as u32
     }
 
+    /// Buys a hint for the models with so many effects; after the last one, nothing.
+    pub fn buy(&mut self, effects: usize) {
+        if self.hints(effects) < LEFT.len() {
+            self.bought.push(effects);
+        }
+    }
+
     /// Hints that were bought for the models with so many effects.
     pub fn hints(&self, effects: usize) -> usize {
         self.bought.iter().filter(|n| **n == effects).count()

@@ -107,6 +107,7 @@ impl Compare {
         if let Some(sealed) = &mut self.sealed {
             sealed.update(self.shown.as_deref().unwrap_or_default());
         }
+        self.pay_for_ranking();
     }
 
     /// Draws the page and carries out what was clicked.
@@ -347,7 +348,7 @@ impl Compare {
             "fingerprint": self.chosen(),
             "model": self.model_file,
             "message": self.message,
-            "sealed": self.sealed.as_ref().map(Sealed::hook_state),
+            "sealed": self.sealed.as_ref().map(|sealed| sealed.hook_state(self.points())),
         })
     }
 }

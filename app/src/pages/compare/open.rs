@@ -132,9 +132,10 @@ impl Compare {
         self.measurement = Some(Arc::new(measurement));
         self.parts.fresh = true;
         self.source = source;
+        // A mystery is to be solved, not to be told; what follows it is as it was wished before.
+        let wished = self.guess_first && self.sealed.is_none();
         self.sealed = seal.map(Sealed::new);
-        // A mystery is to be solved, not to be told.
-        self.guess_first |= self.sealed.is_some();
+        self.guess_first = wished || self.sealed.is_some();
         if self.look == Look::Reveal {
             self.look = Look::default();
         }

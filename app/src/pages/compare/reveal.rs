@@ -132,14 +132,11 @@ fn revealed_ui(
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
-    let cost = f64::from(page.guess.cost());
-    let points = (reveal.points() - cost).max(0.0);
+    let points = page.points().unwrap_or_default();
     theme::answer_ui(ui, msg!("{} of 100 points.", fixed(points, 0)));
-    if cost > 0.0 {
-        ui.label(tr(msg!(
-            "Hints have cost {} points so far.",
-            fixed(cost, 0)
-        )));
+    let cost = page.guess.cost();
+    if cost > 0 {
+        ui.label(tr(msg!("Hints have cost {} points so far.", cost)));
     }
     if Some(effects) != page.shown.as_deref() {
         ui.horizontal_wrapped(|ui| {
