@@ -72,37 +72,83 @@ pub fn room_for_two(ui: &egui::Ui) -> bool {
     ui.available_width() >= PAIR
 }
 
-/// Cards side by side, all as high as the highest.
+/// Cards side by side, all as high as the highest; the place of the one that was pressed beside what is on it.
 pub fn row(
     ui: &mut egui::Ui,
     name: impl std::hash::Hash + std::fmt::Debug,
     count: usize,
-    mut content: impl FnMut(&mut egui::Ui, usize),
-) {
+    mut content: impl FnMut(&mut egui::Ui, usize, &mut Foot),
+) -> Option<usize> {
     // How high that is was seen in the last frame.
     let id = egui::Id::unique(name);
     let height = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
     let mut highest = 0.0_f32;
+    let mut pressed = None;
     ui.columns(count, |columns| {
         for (place, ui) in columns.iter_mut().enumerate() {
-            highest = highest.max(card(ui, height, |ui| content(ui, place)));
+            let card = card(ui, height, |ui, foot| content(ui, place, foot));
+            highest = highest.max(card.height);
+            pressed = pressed.or(card.pressed.then_some(place));
         }
     });
     if highest != height {
         ui.data_mut(|data| data.insert_temp(id, highest));
         ui.ctx().request_repaint();
     }
+    pressed
 }
 
-/// A card of this height at least; how high its content is.
-pub fn card(ui: &mut egui::Ui, least: f32, content: impl FnOnce(&mut egui::Ui)) -> f32 {
-    let framed = egui::Frame::group(ui.style()).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        // A column would stretch the words from edge to edge.
-        ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), content);
-        let content = ui.min_rect();
-        ui.expand_to_include_y(content.top() + least);
-        content.height()
+/// Where a card ends.
+pub struct Foot {
+    bottom: f32,
+    /// What was left free above what stands there, points.
+    free: f32,
+}
+
+impl Foot {
+    /// Has what follows stand there, if it is so high, points: so that the buttons of a row stand in line.
+    pub fn room(&mut self, ui: &mut egui::Ui, height: f32) {
+        self.free = (self.bottom - ui.cursor().top() - height).max(0.0);
+        ui.add_space(self.free);
+    }
+}
+
+/// A card that was drawn.
+pub struct Card {
+    /// Height that its content needs, points.
+    height: f32,
+    /// Whether it was pressed where there is no button on it.
+    pub pressed: bool,
+}
+
+/// A card of this height at least, which is pressed as a whole: keys and screen readers have the button on it.
+pub fn card(ui: &mut egui::Ui, least: f32, content: impl FnOnce(&mut egui::Ui, &mut Foot)) -> Card {
+    let whole = egui::UiBuilder::new().sense(egui::Sense::CLICK);
+    let shown = ui.scope_builder(whole, |ui| {
+        let mut frame = egui::Frame::group(ui.style());
+        if ui.response().contains_pointer() {
+            frame.stroke = ui.visuals().widgets.hovered.bg_stroke;
+        }
+        // Words that could be selected would take the click.
+        ui.style_mut().interaction.selectable_labels = false;
+        let framed = frame.show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            let mut foot = Foot {
+                bottom: ui.cursor().top() + least,
+                free: 0.0,
+            };
+            // A column would stretch the words from edge to edge.
+            let rows = egui::Layout::top_down(egui::Align::LEFT);
+            ui.with_layout(rows, |ui| content(ui, &mut foot));
+            let content = ui.min_rect();
+            ui.expand_to_include_y(content.top() + least);
+            content.height() - foot.free
+        });
+        framed.inner
     });
-    framed.inner
+    let hand = egui::CursorIcon::PointingHand;
+    Card {
+        height: shown.inner,
+        pressed: shown.response.on_hover_cursor(hand).clicked(),
+    }
 }

@@ -1,6 +1,6 @@
 //! Colours and sizes. One quantity has one colour everywhere (Okabe and Ito's colour-blind-safe set).
 
-use egui::Color32;
+use egui::{Color32, FontId};
 
 use crate::language::{Said, tr, tr_number};
 
@@ -29,10 +29,18 @@ pub const SHADE: Color32 = Color32::from_rgb(0xF0, 0xE4, 0x42);
 const WARNING: Color32 = Color32::from_rgb(0xB0, 0x3A, 0x00);
 const ERROR: Color32 = Color32::from_rgb(0xB4, 0x00, 0x00);
 
-/// By how much all is larger for a projector in a window of the usual height, points, and by how much more at most.
-const PROJECTED: f32 = 1.35;
-const USUAL_HEIGHT: f32 = 800.0;
-const MOST_ZOOM: f32 = 4.0;
+/// Sizes of what is read, of what stands small beside it and of what is typed, points, and the height of a capital in
+/// them.
+const BODY: f32 = 14.5;
+const SMALL: f32 = 12.0;
+const TYPED: f32 = 13.0;
+const CAPITAL: f32 = 0.73;
+
+/// Capitals that go one above the other into the width of a projector's picture: where that is 2 m, they are 25 mm high.
+/// A low window has this height at least, points.
+const CAPITALS: f32 = 80.0;
+const LOWEST: f32 = 470.0;
+const MOST_ZOOM: f32 = 8.0;
 
 /// A change of the size that is seen.
 const LEAST_CHANGE: f32 = 0.01;
@@ -84,11 +92,12 @@ impl Look {
         }
     }
 
-    /// How much larger everything is than usual in a window of this height, in points of the system: on a projector's
+    /// How much larger everything is than usual in a window of this size, in points of the system: on a projector's
     /// screen a capital has the same height, however many points the screen has.
-    fn zoom(self, height: f32) -> f32 {
+    fn zoom(self, size: egui::Vec2) -> f32 {
         if self == Self::Projector {
-            PROJECTED * (height / USUAL_HEIGHT).clamp(1.0, MOST_ZOOM)
+            let high = size.x / (CAPITALS * CAPITAL * BODY);
+            high.min(size.y / LOWEST).clamp(1.0, MOST_ZOOM)
         } else {
             1.0
         }
@@ -96,8 +105,7 @@ impl Look {
 
     /// Makes everything as large as the window wants it.
     pub fn fit(self, ctx: &egui::Context) {
-        let height = ctx.content_rect().height() * ctx.zoom_factor();
-        let zoom = self.zoom(height);
+        let zoom = self.zoom(ctx.content_rect().size() * ctx.zoom_factor());
         if (zoom / ctx.zoom_factor() - 1.0).abs() > LEAST_CHANGE {
             ctx.set_zoom_factor(zoom);
         }
@@ -120,6 +128,14 @@ impl Look {
             // egui's orange is too faint on white.
             style.visuals.warn_fg_color = WARNING;
             style.visuals.error_fg_color = ERROR;
+            // Nothing is small from the back row.
+            let [small, typed] = match self {
+                Self::Projector => [BODY; 2],
+                _ => [SMALL, TYPED],
+            };
+            let styles = &mut style.text_styles;
+            styles.insert(egui::TextStyle::Small, FontId::proportional(small));
+            styles.insert(egui::TextStyle::Monospace, FontId::monospace(typed));
         });
         self.fit(ctx);
     }
@@ -133,11 +149,11 @@ pub fn apply(ctx: &egui::Context) {
         style.visuals.error_fg_color = Color32::from_rgb(0xFF, 0x70, 0x70);
     });
     ctx.all_styles_mut(|style| {
-        use egui::{FontId, TextStyle};
+        use egui::TextStyle;
         for (text, size) in [
-            (TextStyle::Body, 14.5),
-            (TextStyle::Button, 14.5),
-            (TextStyle::Small, 12.0),
+            (TextStyle::Body, BODY),
+            (TextStyle::Button, BODY),
+            (TextStyle::Small, SMALL),
             (TextStyle::Heading, 20.0),
         ] {
             style.text_styles.insert(text, FontId::proportional(size));
@@ -237,12 +253,29 @@ pub fn grid(visuals: &egui::Visuals) -> Color32 {
     visuals.text_color().gamma_multiply(GRID)
 }
 
-/// Size of the letters of a page's answer, points.
-pub const ANSWER: f32 = 24.0;
+/// Height below which a window is low: one with few lines, as on a projector or a phone that lies on its side. There
+/// the plots come first, points.
+const LOW: f32 = 560.0;
+
+/// Whether the window is low.
+pub fn is_low(ctx: &egui::Context) -> bool {
+    ctx.content_rect().height() < LOW
+}
+
+/// Size of the letters of a page's answer, where there is room for it and in a low window, points.
+const ANSWER: f32 = 24.0;
+const LOW_ANSWER: f32 = 20.0;
+
+/// Size of the letters of a page's answer in this window, points.
+pub fn answer_size(ctx: &egui::Context) -> f32 {
+    if is_low(ctx) { LOW_ANSWER } else { ANSWER }
+}
 
 /// The large answer of a page.
 pub fn answer_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
-    let text = egui::RichText::new(tr(text)).size(ANSWER).strong();
+    let text = egui::RichText::new(tr(text))
+        .size(answer_size(ui.ctx()))
+        .strong();
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
 }
@@ -250,7 +283,9 @@ pub fn answer_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
 /// The same while the next one is computed for what is set now: it is fainter, and says so.
 pub fn answer_of_before_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
     let color = ui.visuals().weak_text_color();
-    let text = egui::RichText::new(tr(text)).size(ANSWER).color(color);
+    let text = egui::RichText::new(tr(text))
+        .size(answer_size(ui.ctx()))
+        .color(color);
     let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
     // Beside the next line, so that nothing moves while a slider is dragged.
@@ -290,8 +325,14 @@ pub fn button_width_of(ui: &egui::Ui, text: &str) -> f32 {
     text_width(ui, text.to_owned(), font) + around
 }
 
+/// Letters in a drawing: of this size, but none smaller than what is small elsewhere.
+pub fn letters(ui: &egui::Ui, size: f32) -> FontId {
+    let small = egui::TextStyle::Small.resolve(ui.style()).size;
+    FontId::proportional(size.max(small))
+}
+
 /// Width of a text in one line, points.
-pub fn text_width(ui: &egui::Ui, text: String, font: egui::FontId) -> f32 {
+pub fn text_width(ui: &egui::Ui, text: String, font: FontId) -> f32 {
     let color = Color32::PLACEHOLDER;
     ui.painter().layout_no_wrap(text, font, color).size().x
 }
@@ -361,12 +402,21 @@ mod tests {
     }
 
     #[test]
-    fn a_capital_is_read_from_the_back_row_at_any_height() {
-        // A capital is 0.73 of the size of its letters; the screen is 1.25 m high where it is 2 m wide.
-        for height in [800.0, 1080.0, 2160.0] {
-            let capital = 0.73 * 14.5 * Look::Projector.zoom(height) / height;
-            assert!(1250.0 * capital >= 22.0, "{height}: {capital}");
+    fn a_capital_is_25_millimetres_high_where_the_picture_is_2_metres_wide() {
+        for [width, height] in [
+            [1024.0, 768.0],
+            [1280.0, 800.0],
+            [1920.0, 1080.0],
+            [3840.0, 2160.0],
+        ] {
+            let zoom = Look::Projector.zoom(egui::vec2(width, height));
+            let capital = 0.73 * 14.5 * zoom * 2000.0 / width;
+            assert!(capital > 24.99, "{width} x {height}: {capital} mm");
+            assert!(height / zoom >= 470.0, "{width} x {height}: room for it");
         }
-        assert_eq!(Look::Dark.zoom(2160.0), 1.0);
+        // A phone is no projector's picture; a wide and low one is not filled by three lines.
+        assert_eq!(Look::Projector.zoom(egui::vec2(390.0, 844.0)), 1.0);
+        assert!(Look::Projector.zoom(egui::vec2(2560.0, 600.0)) < 1.3);
+        assert_eq!(Look::Dark.zoom(egui::vec2(3840.0, 2160.0)), 1.0);
     }
 }

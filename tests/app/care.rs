@@ -1,19 +1,16 @@
 //! What is noticed only where it is missing: what Escape closes, where the keyboard is, what becomes of a number that
-//! cannot be, whether a warning can be read, and where a page stands when one comes back to it.
+//! cannot be, and where a page stands when one comes back to it.
 
 use std::path::PathBuf;
 
 use crate::support::ui::{App, TALL, WIDE, app, click, finish, finish_when, show, state, texts};
-use egui::epaint::{ClippedShape, Color32, Shape};
+use egui::epaint::{ClippedShape, Shape};
 use egui::{Event, Key, Modifiers, Rect, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use hysteron::language::Language;
 
 /// A phone's window, points.
 const PHONE: [f32; 2] = [390.0, 844.0];
-
-/// Contrast that small text needs (WCAG 2.2, 1.4.3).
-const READABLE: f32 = 4.5;
 
 fn press(harness: &mut App, key: Key) {
     harness.key_press_modifiers(Modifiers::NONE, key);
@@ -230,73 +227,6 @@ fn a_number_that_is_only_looked_at_stays_as_it_is() {
         3.00004
     );
     assert_eq!(notice(&harness), "");
-}
-
-/// Relative luminance (WCAG 2.2).
-fn luminance(color: Color32) -> f32 {
-    let [r, g, b] = [color.r(), color.g(), color.b()].map(|v| {
-        let v = f32::from(v) / 255.0;
-        if v <= 0.04045 {
-            v / 12.92
-        } else {
-            ((v + 0.055) / 1.055).powf(2.4)
-        }
-    });
-    0.2126 * r + 0.7152 * g + 0.0722 * b
-}
-
-fn contrast(a: Color32, b: Color32) -> f32 {
-    let (a, b) = (luminance(a), luminance(b));
-    (a.max(b) + 0.05) / (a.min(b) + 0.05)
-}
-
-/// Coloured texts on the screen that do not stand out from the page enough.
-fn faint(harness: &App) -> Vec<String> {
-    let ground = harness.ctx.global_style().visuals.panel_fill;
-    let faint = |shape: Shape| {
-        let Shape::Text(text) = shape else {
-            return None;
-        };
-        let format = &text.galley.job.sections.first()?.format;
-        let color = text.override_text_color.unwrap_or(format.color);
-        let grey = color.r() == color.g() && color.g() == color.b();
-        let poor = color.a() == 255 && !grey && contrast(color, ground) < READABLE;
-        poor.then(|| format!("{}: {color:?}", text.galley.job.text))
-    };
-    shapes(harness).into_iter().filter_map(faint).collect()
-}
-
-#[test]
-fn warnings_and_coloured_words_are_readable_in_every_look() {
-    for look in ["Dark", "Light", "Projector"] {
-        let mut harness = app("start", TALL);
-        click(&mut harness, "Look");
-        harness.get_by_label(look).click();
-        finish(&mut harness);
-        let visuals = harness.ctx.global_style().visuals.clone();
-        for color in [visuals.warn_fg_color, visuals.error_fg_color] {
-            for ground in [
-                visuals.panel_fill,
-                visuals.window_fill,
-                visuals.faint_bg_color,
-            ] {
-                if ground.a() == 255 {
-                    let contrast = contrast(color, ground);
-                    assert!(contrast >= READABLE, "{look}: {color:?}: {contrast}");
-                }
-            }
-        }
-        for place in [
-            "v1;explore;explore.figure=3",
-            "v1;explore;loop.relay.hysteresis=0;loop.plant.denominator=1,1",
-            "v1;tune;tune.step=loops",
-            "v1;backlash;backlash.figure=7",
-            "v1;compare;compare.file=drive-02",
-        ] {
-            show(&mut harness, place);
-            assert_eq!(faint(&harness), Vec::<String>::new(), "{look}: {place}");
-        }
-    }
 }
 
 #[test]

@@ -1,11 +1,14 @@
 //! Every page in every look and in a phone's window: pictures to be looked at.
 
-use crate::support::ui::{App, app, click, finish, picture, show};
+use std::path::Path;
+
+use crate::support::ui::{App, WIDE, app, click, finish, picture, show, wear};
 use hysteron::HysteronApp;
 use hysteron::language::Language;
 
-/// A small window and a phone's, points.
+/// A small window, a large one and a phone's, points.
 const SMALL: [f32; 2] = [1100.0, 720.0];
+const LARGE: [f32; 2] = [1920.0, 1080.0];
 const PHONE: [f32; 2] = [390.0, 844.0];
 
 /// Shows a page in a state in which it has something to show and nothing moves.
@@ -68,4 +71,28 @@ fn on_a_phone_in_german() {
         &["start", "explore", "compare"],
         "phone_german",
     );
+}
+
+/// For a person to look through; a test of what they show would be a test of every pixel.
+#[test]
+#[ignore = "writes pictures to be looked at: cargo xtask pictures"]
+fn pictures_of_every_page_in_each_look_and_window() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/pictures");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let mut written = 0;
+    for size in [WIDE, LARGE, PHONE] {
+        for look in ["Dark", "Light", "Projector"] {
+            let mut harness = app("start", size);
+            wear(&mut harness, look);
+            for page in HysteronApp::default().page_ids() {
+                still(&mut harness, page);
+                let name = format!("{}x{}-{look}-{page}.png", size[0], size[1]);
+                let picture = harness.render().expect("a picture");
+                assert_eq!(picture.width(), size[0] as u32, "{name}");
+                picture.save(folder.join(&name)).expect(&name);
+                written += 1;
+            }
+        }
+    }
+    println!("{written} pictures in {}", folder.display());
 }

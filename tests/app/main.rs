@@ -15,6 +15,8 @@ mod compare;
 mod explore;
 mod german;
 mod habits;
+mod journeys;
+mod legible;
 mod lessons;
 mod links;
 mod looks;

@@ -155,6 +155,24 @@ pub fn click(harness: &mut App, label: &str) {
     finish(harness);
 }
 
+/// Has the app look so, by its menu, which in a narrow window is inside another one.
+pub fn wear(harness: &mut App, look: &str) {
+    harness.step();
+    if harness.query_by_label("Look").is_none() {
+        let mut menus = ["More", "Menu: Start"].into_iter();
+        let menu = menus.find(|name| harness.query_by_label(name).is_some());
+        harness.get_by_label(menu.expect("a menu")).click();
+        harness.run_steps(3);
+    }
+    harness.get_by_label("Look").click();
+    harness.run_steps(3);
+    harness.get_by_label(look).click();
+    finish(harness);
+    // Away from where the buttons are.
+    harness.hover_at(Pos2::new(1.0, 1.0));
+    finish(harness);
+}
+
 /// Opens a link and waits until what it shows is there.
 pub fn show(harness: &mut App, link: &str) {
     let ctx = harness.ctx.clone();

@@ -22,6 +22,7 @@ const HELP: &str = "cargo xtask COMMAND
   browser-test    drive dist/ in headless Chromium
   fuzz [--minutes N] [--inputs N] [--seed N]
                   give every reader inputs that were made wrong
+  pictures        write every page in each look and window into target/pictures/
   archives-test   pack what the tests have built, unpack it, and use it
   release         pack the program and the page into target/archives/
 ";
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
             .and_then(serve::forever),
         ["browser-test"] => browser::test(),
         ["fuzz", options @ ..] => fuzz(options),
+        ["pictures"] => pictures(),
         ["archives-test"] => archives::test(),
         ["release"] => release::build(),
         [] | ["help" | "--help" | "-h"] => {
@@ -61,4 +63,12 @@ fn main() -> ExitCode {
 fn fuzz(options: &[&str]) -> Result<(), String> {
     let run = ["run", "--quiet", "-p", "hysteron-fuzz", "--"];
     run::run("cargo", &[&run[..], options].concat())
+}
+
+/// Writes pictures of every page, to be looked at.
+fn pictures() -> Result<(), String> {
+    let test = "looks::pictures_of_every_page_in_each_look_and_window";
+    let run = ["test", "--workspace", "--test", "app", "--"];
+    let only = ["--ignored", "--exact", test, "--nocapture"];
+    run::cargo(&[&run[..], &only].concat(), None)
 }

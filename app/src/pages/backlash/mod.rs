@@ -52,6 +52,7 @@ const SIDE: f32 = 380.0;
 
 /// Height of the drawn masses, points.
 const PICTURE: f32 = 112.0;
+const LOW_PICTURE: f32 = 86.0;
 
 /// The page: what is set, and what follows from it.
 pub struct Backlash {
@@ -337,7 +338,9 @@ impl Backlash {
         if self.shows_structure(scene) {
             structure::ui(ui, scene, self.playback.clock);
         } else {
-            picture::ui(ui, scene, self.playback.clock, PICTURE);
+            let low = theme::is_low(ui.ctx());
+            let height = if low { LOW_PICTURE } else { PICTURE };
+            picture::ui(ui, scene, self.playback.clock, height);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The two masses and the gap between them, drawn.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
 use super::plots::{CONTACT, LOAD};
 use super::scene::Scene;
@@ -35,7 +35,7 @@ pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
     let middle = rect.center().y - 8.0;
     let (top, bottom) = (rect.top() + 6.0, rect.bottom() - 34.0);
     let text = |at: Pos2, text: &'static str| {
-        let font = FontId::proportional(13.0);
+        let font = theme::letters(ui, 13.0);
         painter.text(at, Align2::CENTER_CENTER, tr(text), font, Color32::BLACK);
     };
 
@@ -123,7 +123,7 @@ impl View {
             let unit = if named { "" } else { " mrad" };
             let label = painter.layout_no_wrap(
                 tr_number(format!("{x:.decimals$}")) + unit,
-                FontId::proportional(11.0),
+                theme::letters(ui, 11.0),
                 color,
             );
             let half = 0.5 * label.size().x;

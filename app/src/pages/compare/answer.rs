@@ -95,8 +95,12 @@ impl Compare {
             theme::answer_ui(ui, &text);
         }
         if let Some(formula) = formula {
-            sized_equation_ui(ui, &formula, theme::ANSWER, &|_| None);
+            sized_equation_ui(ui, &formula, theme::answer_size(ui.ctx()), &|_| None);
         }
+    }
+
+    /// What is noise in the record.
+    pub(super) fn noise_ui(&self, ui: &mut egui::Ui) {
         for noise in self.report().iter().flat_map(|report| &report.noise) {
             ui.weak(tr(noise.words()));
         }

@@ -123,6 +123,7 @@ impl Compare {
                     theme::scroll("compare").show(ui, |ui| {
                         // What is seen first, then what could be done: the list of effects is long.
                         self.answer_ui(ui);
+                        self.noise_ui(ui);
                         self.message_ui(ui, &mut commands);
                         side::progress_ui(self, ui, &mut commands);
                         let top = ui.cursor().min;
@@ -153,13 +154,23 @@ impl Compare {
                     });
                 desk.side.note(ui, whole - ui.available_width());
                 egui::CentralPanel::default().show(ui, |ui| {
+                    let low = theme::is_low(ui.ctx());
                     self.answer_ui(ui);
+                    if !low {
+                        self.noise_ui(ui);
+                    }
                     self.message_ui(ui, &mut commands);
                     theme::scroll("compare").show(ui, |ui| {
-                        self.findings_ui(ui, &mut commands);
+                        if !low {
+                            self.findings_ui(ui, &mut commands);
+                        }
                         self.looks_ui(ui, targets, &mut commands);
                         let height = ui.available_height();
                         self.evidence_ui(ui, height, targets, &mut commands);
+                        if low {
+                            self.findings_ui(ui, &mut commands);
+                            self.noise_ui(ui);
+                        }
                     });
                 });
             }

@@ -55,7 +55,7 @@ const AXIS_WIDTH: f32 = 86.0;
 const SIGNAL: f32 = 0.75;
 
 /// Height of a plot below which the page scrolls.
-const LEAST_HEIGHT: f32 = 110.0;
+const LEAST_HEIGHT: f32 = 106.0;
 
 pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let Some(measurement) = &page.measurement else {
@@ -66,7 +66,9 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let count = measurement.outputs.len().max(1) as f32;
     caption_ui(ui, "", &curves(page, report.is_some()));
     let mut above = CAPTION;
-    if report.is_some() {
+    // In a low window it stands beneath the plots.
+    let low = theme::is_low(ui.ctx());
+    if report.is_some() && !low {
         let note = ui.small(tr(RESTARTED));
         above += note.rect.height() + ui.spacing().item_spacing.y;
     }
@@ -92,6 +94,9 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
             let models = (modelled, before, hand);
             residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
         }
+    }
+    if report.is_some() && low {
+        ui.small(tr(RESTARTED));
     }
 }
 

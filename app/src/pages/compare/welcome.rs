@@ -19,18 +19,22 @@ const GLIMPSE_SHARE: f32 = 0.25;
 const GLIMPSE_SWITCHES: usize = 12;
 const GLIMPSE_SAMPLES: usize = 1000;
 
+/// Height of the button of a card, points.
+const BUTTON: f32 = 36.0;
+
 /// A measurement: how it begins, what it is, and the button that opens it.
 fn card_ui(
     ui: &mut egui::Ui,
-    index: usize,
-    built_in: &'static BuiltIn,
+    (index, built_in): (usize, &'static BuiltIn),
+    foot: &mut layout::Foot,
     targets: &mut Targets,
     commands: &mut Vec<Command>,
 ) {
     ui.strong(egui::RichText::new(tr(built_in.title)).size(17.0));
     glimpse_ui(ui, built_in);
     ui.label(tr(built_in.story));
-    let size = egui::vec2(ui.available_width(), 36.0);
+    let size = egui::vec2(ui.available_width(), BUTTON);
+    foot.room(ui, BUTTON);
     let button = ui.add_sized(
         size,
         egui::Button::new(tr(msg!("Open {}", built_in.file.id))),
@@ -125,14 +129,16 @@ impl Compare {
             ui.add_space(12.0);
             if ui.available_width() < layout::NARROW {
                 for (index, built_in) in BUILT_IN.iter().enumerate() {
-                    layout::card(ui, 0.0, |ui| {
-                        card_ui(ui, index, built_in, targets, commands);
+                    let card = layout::card(ui, 0.0, |ui, foot| {
+                        card_ui(ui, (index, built_in), foot, targets, commands);
                     });
+                    commands.extend(card.pressed.then_some(Command::OpenBuiltIn(index)));
                 }
             } else {
-                layout::row(ui, "measurements", BUILT_IN.len(), |ui, index| {
-                    card_ui(ui, index, &BUILT_IN[index], targets, commands);
+                let pressed = layout::row(ui, "measurements", BUILT_IN.len(), |ui, index, foot| {
+                    card_ui(ui, (index, &BUILT_IN[index]), foot, targets, commands);
                 });
+                commands.extend(pressed.map(Command::OpenBuiltIn));
             }
             ui.add_space(12.0);
             ui.horizontal_wrapped(|ui| {

@@ -42,6 +42,9 @@ use theory::Theory;
 /// Simulated periods that are played back in a second.
 const PERIODS_PER_SECOND: f64 = 0.6;
 
+/// Least height of a plot with its caption, points.
+const LEAST: f32 = 110.0;
+
 /// Computations whose time is remembered.
 const REMEMBERED: usize = 31;
 
@@ -293,7 +296,7 @@ impl Explore {
                         return self.servo.plots_ui(ui, height);
                     }
                 }
-                let height = (0.5 * ui.available_height() - 34.0).max(150.0);
+                let height = (0.5 * ui.available_height() - 34.0).max(LEAST);
                 if layout::room_for_two(ui) {
                     ui.columns(2, |columns| {
                         self.nyquist_ui(&mut columns[0], height);

@@ -17,6 +17,9 @@ use crate::widgets::chart::{Shape, caption_ui, curve, dot, still};
 /// How near the pointer must come to take hold, points.
 const REACH: f32 = 9.0;
 
+/// From a mark to its label, points.
+const NEAR: f64 = 9.0;
+
 /// Largest phase margin that S can be dragged to, rad.
 const LARGEST_MARGIN: f64 = 1.4;
 
@@ -74,6 +77,7 @@ impl Nyquist {
             let [x, y] = bounds(view, plot.transform().frame().aspect_ratio());
             plot.set_plot_bounds_y(y);
             plot.set_plot_bounds_x(x);
+            let point = plot.transform().dvalue_dpos()[1].abs();
             plot.line(
                 Line::new(tr("plant P(jω)"), curve(&data.nyquist))
                     .color(theme::MEASURED)
@@ -109,13 +113,14 @@ impl Nyquist {
                 );
                 let text = msg!("S: margin φ = {}°", fixed(phi.to_degrees(), 1));
                 // Above it: below the line stands the amplitude.
-                let above = [at[0] - 0.08 * view, at[1] + 0.08 * view];
+                let above = [at[0] - 0.08 * view, at[1] + NEAR * point];
                 plot.text(label("S", text, above).anchor(egui::Align2::LEFT_BOTTOM));
             }
             if let Some((a, at)) = marker {
                 plot.points(dot("a", at));
                 let text = format!("a = {a:.3}").into();
-                plot.text(label("a", text, [at[0], at[1] - 0.09 * view]));
+                let below = label("a", text, [at[0], at[1] - NEAR * point]);
+                plot.text(below.anchor(egui::Align2::CENTER_TOP));
             }
         });
         self.drag(&shown.response, &shown.transform, relay, shown_margin);

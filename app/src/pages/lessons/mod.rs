@@ -31,16 +31,19 @@ impl View for Lessons {
                 let all: Vec<_> = lessons::all().enumerate().collect();
                 if ui.available_width() < layout::NARROW {
                     for (index, lesson) in &all {
-                        layout::card(ui, 0.0, |ui| lesson_ui(ui, desk, *index, lesson));
+                        let card = layout::card(ui, 0.0, |ui, _| lesson_ui(ui, desk, *index, lesson));
+                        desk.commands.extend(card.pressed.then(|| begin(lesson)));
                     }
                     return;
                 }
                 for (number, row) in all.chunks(2).enumerate() {
-                    layout::row(ui, ("lessons", number), row.len(), |ui, place| {
+                    let pressed = layout::row(ui, ("lessons", number), row.len(), |ui, place, _| {
                         if let Some((index, lesson)) = row.get(place) {
                             lesson_ui(ui, desk, *index, lesson);
                         }
                     });
+                    let pressed = pressed.and_then(|place| row.get(place));
+                    desk.commands.extend(pressed.map(|(_, lesson)| begin(lesson)));
                 }
             });
         });
@@ -69,6 +72,11 @@ impl Settable for Lessons {
     }
 }
 
+/// Opens a lesson.
+fn begin(lesson: &Lesson) -> Command {
+    Command::Lesson(Some(lesson.id.to_owned()))
+}
+
 /// A lesson: its title, how long it takes, and how it begins.
 fn lesson_ui(ui: &mut egui::Ui, desk: &mut Desk, index: usize, lesson: &Lesson) {
     let title = format!("{}  {}", index + 1, lesson.title);
@@ -76,8 +84,7 @@ fn lesson_ui(ui: &mut egui::Ui, desk: &mut Desk, index: usize, lesson: &Lesson) 
     desk.targets
         .note(format!("lesson:{}", lesson.id), ui, &button);
     if button.clicked() {
-        desk.commands
-            .push(Command::Lesson(Some(lesson.id.to_owned())));
+        desk.commands.push(begin(lesson));
     }
     lesson.beginning_ui(ui);
     ui.horizontal(|ui| {

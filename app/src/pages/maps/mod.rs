@@ -204,7 +204,7 @@ impl View for Maps {
             return;
         }
         egui::Panel::left("map choices")
-            .exact_size(layout::side(ui, 330.0))
+            .exact_size(layout::side(ui, 350.0))
             .resizable(false)
             .show(ui, |ui| {
                 theme::scroll("maps_side").show(ui, |ui| {

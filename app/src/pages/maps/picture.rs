@@ -8,6 +8,7 @@ use hysteron_core::msg;
 use super::words::{axis_title, number, stability, with_unit};
 use crate::colors::viridis;
 use crate::language::{tr, tr_number};
+use crate::theme;
 use crate::widgets::chart::Chart;
 
 /// Pixels of the texture along a cell, so that hatching shows.
@@ -235,7 +236,7 @@ fn bar_ui(ui: &egui::Ui, rect: egui::Rect, scale: [f64; 2]) {
             ),
             anchor,
             tr_number(format!("{mark}{}", number(value))),
-            egui::FontId::proportional(13.0),
+            theme::letters(ui, 13.0),
             ui.visuals().text_color(),
         );
     }

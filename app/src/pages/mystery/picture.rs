@@ -33,6 +33,7 @@ pub(super) fn ui(ui: &mut Ui, experiment: Experiment) {
         painter: ui.painter_at(rect),
         color: ui.visuals().text_color(),
         ground: ui.visuals().extreme_bg_color,
+        names: theme::letters(ui, 13.0),
     };
     let mut left = rect.left();
     let shares = if rect.width() < NARROW {
@@ -61,23 +62,18 @@ struct Pen {
     painter: Painter,
     color: Color32,
     ground: Color32,
+    names: FontId,
 }
 
 impl Pen {
-    fn text(&self, at: Pos2, align: Align2, text: &'static str, size: f32, color: Color32) {
-        let font = FontId::proportional(size);
+    fn name(&self, at: Pos2, align: Align2, text: &'static str, color: Color32) {
+        let font = self.names.clone();
         self.painter.text(at, align, tr(text), font, color);
     }
 
     /// A name, and a curve from -1 to 1 beneath it.
     fn curve(&self, rect: Rect, name: &'static str, values: &[f32], color: Color32) {
-        self.text(
-            rect.center_top(),
-            Align2::CENTER_TOP,
-            name,
-            13.0,
-            self.color,
-        );
+        self.name(rect.center_top(), Align2::CENTER_TOP, name, self.color);
         let frame = rect.with_min_y(rect.top() + 20.0);
         self.painter.rect_filled(frame, 4.0, self.ground);
         let (middle, half) = (frame.center().y, 0.42 * frame.height());
@@ -113,21 +109,15 @@ impl Pen {
             (block(inner.right() - side, side, 84.0), far, theme::NOISE),
         ] {
             self.painter.rect_filled(part, 5.0, color);
-            self.text(
-                part.center(),
-                Align2::CENTER_CENTER,
-                name,
-                13.0,
-                Color32::BLACK,
-            );
+            self.name(part.center(), Align2::CENTER_CENTER, name, Color32::BLACK);
         }
         let hidden = block(inner.left() + 1.15 * side, inner.width() - 2.3 * side, 70.0);
         self.painter.rect_filled(hidden, 5.0, theme::RESIDUAL);
-        self.text(
+        self.painter.text(
             hidden.center(),
             Align2::CENTER_CENTER,
             "?",
-            40.0,
+            FontId::proportional(40.0),
             Color32::BLACK,
         );
     }

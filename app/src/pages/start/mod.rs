@@ -22,8 +22,10 @@ const PERIODS_PER_SECOND: f64 = 0.6;
 /// Tables of Explore that are about what is shown here too: all but Nyquist's curve.
 const SHOWN: usize = TABLES.len() - 1;
 
-/// Height of all but the plots, points.
+/// Height of all but the plots, of the least plot, and of the button of a door, points.
 const REST: f32 = 390.0;
+const LEAST: f32 = 130.0;
+const BUTTON: f32 = 36.0;
 
 /// A door to another page.
 struct Door {
@@ -190,7 +192,7 @@ impl Start {
                 } else {
                     // The doors beneath stay in view.
                     let window = ui.ctx().content_rect().height();
-                    let height = (window - REST).min(0.42 * window).max(150.0);
+                    let height = (window - REST).min(0.42 * window).max(LEAST);
                     ui.columns(2, |columns| {
                         relay_loop::time_ui(
                             &mut columns[0],
@@ -238,15 +240,20 @@ impl Start {
 }
 
 fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
-    if ui.available_width() < layout::NARROW {
-        for door in &DOORS {
-            layout::card(ui, 0.0, |ui| door_ui(ui, desk, door));
-        }
-    } else {
-        layout::row(ui, "doors", DOORS.len(), |ui, place| {
-            door_ui(ui, desk, &DOORS[place]);
+    let pressed = if ui.available_width() < layout::NARROW {
+        let cards = DOORS.iter().map(|door| {
+            let card = layout::card(ui, 0.0, |ui, foot| door_ui(ui, desk, door, foot));
+            card.pressed.then_some(door)
         });
-    }
+        cards.fold(None, Option::or)
+    } else {
+        let place = layout::row(ui, "doors", DOORS.len(), |ui, place, foot| {
+            door_ui(ui, desk, &DOORS[place], foot);
+        });
+        place.and_then(|place| DOORS.get(place))
+    };
+    desk.commands
+        .extend(pressed.map(|door| Command::Go(door.page)));
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         ui.label(tr("Or:"));
@@ -258,10 +265,14 @@ fn doors_ui(ui: &mut egui::Ui, desk: &mut Desk) {
     });
 }
 
-fn door_ui(ui: &mut egui::Ui, desk: &mut Desk, door: &Door) {
+fn door_ui(ui: &mut egui::Ui, desk: &mut Desk, door: &Door, foot: &mut layout::Foot) {
     ui.strong(egui::RichText::new(tr(door.question)).size(17.0));
-    ui.label(tr(door.story));
-    let size = egui::vec2(ui.available_width(), 36.0);
+    // In a low window the plots come first.
+    if !theme::is_low(ui.ctx()) {
+        ui.label(tr(door.story));
+    }
+    let size = egui::vec2(ui.available_width(), BUTTON);
+    foot.room(ui, BUTTON);
     let button = ui.add_sized(size, egui::Button::new(tr(door.button)));
     desk.targets
         .note(format!("door:{}", door.page), ui, &button);
