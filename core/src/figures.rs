@@ -1,7 +1,7 @@
 //! The relay loop of the paper's Figs. 3, 4 and 5: what they show, and whether it is so.
 
 use crate::explore::{ExploreData, ExploreError, ExploreInput, compute};
-use crate::message::{Message, fixed};
+use crate::message::{Message, fixed, signed};
 use crate::msg;
 use crate::relay::Relay;
 use crate::simulate::Noise;
@@ -146,8 +146,8 @@ fn oscillates(data: &ExploreData) -> Vec<Check> {
         all.push(check(
             msg!(
                 "the describing function is off by {} % in period, {} % in amplitude",
-                format!("{:+.1}", 100.0 * period),
-                format!("{:+.1}", 100.0 * amplitude)
+                signed(100.0 * period, 1),
+                signed(100.0 * amplitude, 1)
             ),
             period.abs() < DESCRIBED && amplitude.abs() < DESCRIBED,
         ));
@@ -172,7 +172,7 @@ fn noise_is_held_off(input: &ExploreInput, data: &ExploreData) -> Result<Vec<Che
         all.push(check(
             msg!(
                 "noise moves the mean period by {} %",
-                format!("{:+.1}", 100.0 * moved)
+                signed(100.0 * moved, 1)
             ),
             moved.abs() < MOVED,
         ));

@@ -36,9 +36,28 @@ macro_rules! msg {
     };
 }
 
-/// A number with this many decimals.
+/// A number with this many decimals; one that rounds to 0 is not below it.
 pub fn fixed(value: f64, decimals: usize) -> Message {
-    Message::Number(format!("{value:.decimals$}"))
+    let text = format!("{value:.decimals$}");
+    let size = text.trim_start_matches('-');
+    if is_zero(size) {
+        return Message::Number(size.to_owned());
+    }
+    Message::Number(text)
+}
+
+/// The same with its sign, also where that is a plus.
+pub fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    match text.strip_prefix('-') {
+        Some(size) if is_zero(size) => format!("+{size}"),
+        _ => text,
+    }
+}
+
+/// Whether digits are all 0.
+fn is_zero(digits: &str) -> bool {
+    digits.chars().all(|c| c == '0' || c == '.')
 }
 
 /// The `{}` in a text.
@@ -272,6 +291,20 @@ mod tests {
         let friction = msg!("Coulomb friction, {}", Message::name("own {}"));
         let list = Message::list(" and ", [friction, "load".into()]);
         msg!("Missing: {}.", list).and(msg!("With {} left, {} samples.", fixed(1.25, 1), 3_usize))
+    }
+
+    #[test]
+    fn what_rounds_to_zero_is_not_below_it() {
+        for (value, plain, with_sign) in [
+            (-0.04, "0.0", "+0.0"),
+            (0.04, "0.0", "+0.0"),
+            (-0.06, "-0.1", "-0.1"),
+            (20.0, "20.0", "+20.0"),
+            (-20.0, "-20.0", "-20.0"),
+        ] {
+            assert_eq!(fixed(value, 1).to_string(), plain);
+            assert_eq!(signed(value, 1), with_sign);
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::{
     describing_function, exact_cycles, existence, likely_half_periods, settled_cycle,
     typical_frequency,
 };
-use crate::message::{Message, fixed, says};
+use crate::message::{Message, fixed, says, signed};
 use crate::msg;
 use crate::plant::{PlantError, TransferFunction};
 use crate::relay::{Relay, RelayError};
@@ -234,8 +234,8 @@ fn trust(
     let smooth = main.distortion <= TRUSTED_DISTORTION;
     let differences = msg!(
         "it is off by {} % in period and {} % in amplitude",
-        format!("{:+.1}", 100.0 * errors[0]),
-        format!("{:+.1}", 100.0 * errors[1])
+        signed(100.0 * errors[0], 1),
+        signed(100.0 * errors[1], 1)
     );
     let harmonics = msg!(
         "harmonics {} % as large as the first reach the output",
@@ -314,7 +314,7 @@ fn trust_of_continuum(plant: &TransferFunction, relay: &Relay, cycle: &Cycle) ->
     let omega = illinois((low, off(low)), (high, off(high)), off);
     let error = exact / omega - 1.0;
     let good = error.abs() <= TRUSTED_ERROR;
-    let off = format!("{:+.1}", 100.0 * error);
+    let off = signed(100.0 * error, 1);
     Trust {
         reliable: good,
         period_error: Some(error),

@@ -3,7 +3,7 @@
 use crate::language::{tr, tr_number};
 use crate::theme;
 use crate::widgets::chart::significant;
-use hysteron_core::message::Message;
+use hysteron_core::message::{Message, signed};
 
 /// What one way says of the cycle: numbers in the order of the titles, and whether it is stable; nothing where it sees
 /// none.
@@ -89,7 +89,7 @@ pub fn difference(value: f64, exact: f64) -> Message {
         let sign = if percent > 0.0 { "+" } else { "" };
         format!("{sign}{} %", significant(percent, 1)).into()
     } else {
-        format!("{percent:+.2} %").into()
+        format!("{} %", signed(percent, 2)).into()
     }
 }
 

@@ -120,6 +120,9 @@ fn convergence_ui(ui: &mut egui::Ui, found: &PhaseMarginReport, height: f32) {
     });
 }
 
+/// Decimals of a gain and of an amplitude on the way to what is looked for: its last steps are small.
+const DECIMALS: usize = 5;
+
 const STEFFENSEN: &str = "Steffensen, two runs a step";
 const SECANT: &str = "secant (8), one run a step";
 
@@ -157,8 +160,8 @@ fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
         |ui| {
             for (n, step) in secant.steps.iter().take(shown).enumerate() {
                 ui.label(n.to_string());
-                ui.label(tr_number(format!("{:.6}", step.gain)));
-                ui.label(tr_number(format!("{:.6}", a(step))));
+                ui.label(tr_number(format!("{:.DECIMALS$}", step.gain)));
+                ui.label(tr_number(format!("{:.DECIMALS$}", a(step))));
                 ui.label(tr_number(significant(step.error, 2)));
                 ui.end_row();
             }
@@ -169,14 +172,14 @@ fn secant_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     {
         ui.label(tr(msg!(
             "Next: K = {} - ({} - {}) · ({} - {})/({} - {}) = {}.",
-            fixed(now.gain, 6),
-            fixed(a(now), 6),
-            fixed(found.adaptation.design.amplitude, 6),
-            fixed(now.gain, 6),
-            fixed(last.gain, 6),
-            fixed(a(now), 6),
-            fixed(a(last), 6),
-            fixed(next.gain, 6)
+            fixed(now.gain, DECIMALS),
+            fixed(a(now), DECIMALS),
+            fixed(found.adaptation.design.amplitude, DECIMALS),
+            fixed(now.gain, DECIMALS),
+            fixed(last.gain, DECIMALS),
+            fixed(a(now), DECIMALS),
+            fixed(a(last), DECIMALS),
+            fixed(next.gain, DECIMALS)
         )));
     } else {
         ui.label(tr(msg!(
@@ -200,7 +203,7 @@ fn table_ui(ui: &mut egui::Ui, found: &PhaseMarginReport) {
     table(ui, "adaptation table", &heads, |ui| {
         for (n, step) in adaptation.steps.iter().enumerate() {
             ui.label(n.to_string());
-            ui.label(tr_number(format!("{:.6}", step.gain)));
+            ui.label(tr_number(format!("{:.DECIMALS$}", step.gain)));
             ui.label(tr_number(significant(step.error, 2)));
             ui.label(tr_number(number(step.test.period)));
             // The first order needs three errors.

@@ -1,7 +1,7 @@
 //! What the steps draw alike.
 
 use egui_plot::{Line, LineStyle, PlotPoints};
-use hysteron_core::message::Message;
+use hysteron_core::message::{Message, signed};
 use hysteron_core::tuning::{Pid, RelayTest};
 use hysteron_core::uncertain::digits;
 
@@ -26,7 +26,7 @@ pub fn maybe(value: Option<f64>, otherwise: &'static str) -> Message {
 
 /// A relative error in words.
 pub fn error(value: Option<f64>) -> Message {
-    let error = value.map(|e| format!("{:+.1} %", 100.0 * e));
+    let error = value.map(|e| format!("{} %", signed(100.0 * e, 1)));
     error.unwrap_or_default().into()
 }
 
