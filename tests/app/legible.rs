@@ -88,10 +88,9 @@ fn texts(harness: &App) -> Vec<(TextShape, Color32)> {
             Shape::Mesh(mesh) => below.push((clip.intersect(mesh.calc_bounds()), None)),
             Shape::Text(text) => {
                 let at: Pos2 = text.visual_bounding_rect().center();
-                let grounds = below.iter().filter(|(rect, _)| rect.contains(at));
-                let ground = grounds.fold(Some(panel), |ground, (_, fill)| {
-                    Some(ground?.blend((*fill)?))
-                });
+                let mut grounds = below.iter().filter(|(rect, _)| rect.contains(at));
+                let ground =
+                    grounds.try_fold(panel, |ground, (_, fill)| Some(ground.blend((*fill)?)));
                 let said = !text.galley.job.text.trim().is_empty();
                 if let Some(ground) = ground.filter(|_| said && clip.contains(at)) {
                     texts.push((text, ground));

@@ -30,7 +30,9 @@ impl Compare {
         let open = self.report().is_some_and(|r| r.suggestion.is_some());
         let sealed = self.sealed.as_ref().is_some_and(|s| !s.is_revealed());
         if open && sealed && !self.guess_first {
-            LEFT.iter().for_each(|_| self.buy_hint());
+            for _ in LEFT {
+                self.buy_hint();
+            }
         }
     }
 
