@@ -36,8 +36,8 @@ const SMALL: f32 = 12.0;
 const TYPED: f32 = 13.0;
 const CAPITAL: f32 = 0.73;
 
-/// Capitals that go one above the other into the width of a projector's picture: where that is 2 m, they are 25 mm high.
-/// A low window has this height at least, points.
+/// Capitals that go one above the other into the width of a projector's picture: where that is 2 m, they are 25 mm
+/// high. A low window has this height at least, points.
 const CAPITALS: f32 = 80.0;
 const LOWEST: f32 = 470.0;
 const MOST_ZOOM: f32 = 8.0;

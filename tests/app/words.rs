@@ -1,5 +1,5 @@
-//! What is drawn is what a reader would write: no exponents of a computer, no names of symbols, one unit in a label, and
-//! no more digits than someone reads.
+//! What is drawn is what a reader would write: no exponents of a computer, no names of symbols, one unit in a label,
+//! and no more digits than someone reads.
 
 use std::collections::BTreeSet;
 
