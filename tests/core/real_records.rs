@@ -45,6 +45,7 @@ fn an_arm_has_weight_and_its_gears_rub_the_more_the_more_they_carry() {
         return;
     };
     check(&d, &[SPRING, &["load_dependent_friction"]]);
+    check_near(&d, "J1", 0.07, 0.15);
 }
 
 /// An electronic oscillator with a hardening spring, nine samples to a period: J 5.37e-6, d 2.25e-4, k 0.99, k3 3.9. It
@@ -101,7 +102,9 @@ fn a_process_that_integrates_has_a_rate_and_no_gain() {
     let Some(d) = diagnose_shared("failing/integrating-process-pulses.csv") else {
         return;
     };
-    check(&d, &[&["input_delay"]]);
+    // Much is left that nothing explains: there a lag may stand for the dead time.
+    let [class] = classes(&d).try_into().unwrap();
+    assert!(class.contains(&"input_delay"), "{}", d.verdict.text);
     check_near(&d, "K/T", -8.0, 0.1);
     assert!(
         d.verdict.text.to_string().contains("integrates"),
@@ -124,9 +127,9 @@ fn friction_that_flattens_with_speed_is_found_in_one_move() {
 const SAMPLES: u32 = 2500;
 const STEPS: u32 = 50;
 
-/// Weight of the arm, N m, and share of its drive that the gears take.
+/// Weight of the arm, N m, and share of what the gears carry that they rub with.
 const WEIGHT: f64 = 5.7;
-const SHARE: f64 = 0.55;
+const SHARE: f64 = 0.3;
 
 /// Where the arm is sent, rad, every one and a half seconds.
 const PLACES: [f64; 10] = [0.6, -0.4, 0.9, 0.1, -0.8, 0.5, -0.2, 0.7, -0.6, 0.3];
@@ -143,9 +146,10 @@ fn target(t: f64) -> f64 {
     from + (to - from) * share * share * (3.0 - 2.0 * share)
 }
 
-/// An arm of 0.07 kg m^2 on gears that hold it between moves, with an encoder of 4096 counts a turn.
-fn arm() -> String {
-    let (inertia, viscous, dry, count) = (0.07, 0.5, 0.1, 1.53e-3);
+/// An arm of 0.07 kg m^2 on gears that hold it between moves, with an encoder of 4096 counts a turn; the motor has a
+/// dry friction of its own, N m.
+fn arm(dry: f64) -> String {
+    let (inertia, viscous, count) = (0.07, 0.5, 1.53e-3);
     let mut csv = "t [s],u [N m],x1 [rad]\n".to_owned();
     let (mut x, mut v) = (0.0_f64, 0.0_f64);
     for sample in 0..SAMPLES {
@@ -154,9 +158,10 @@ fn arm() -> String {
         let u = (16.0 * (target(t) - seen)).clamp(-7.4, 7.4);
         writeln!(csv, "{t:.4},{u:.5},{seen:.5}").unwrap();
         let step = 5e-3 / f64::from(STEPS);
-        let friction = dry + SHARE * u.abs();
         for _ in 0..STEPS {
-            let drive = u - WEIGHT * libm::sin(x) - viscous * v;
+            let weight = -WEIGHT * libm::sin(x);
+            let friction = dry + SHARE * (u - weight).abs();
+            let drive = u + weight - viscous * v;
             let way = if v == 0.0 { drive } else { v };
             let moved = v + (drive - friction.copysign(way)) / inertia * step;
             // It stays where it turns round, and where its drive does not overcome friction.
@@ -174,12 +179,23 @@ fn arm() -> String {
 
 #[test]
 fn so_do_those_of_an_arm_that_is_made_here() {
-    let d = diagnose("arm", arm().as_bytes());
+    let d = diagnose("arm", arm(0.0).as_bytes());
+    check(&d, &[&["gravity"], &["load_dependent_friction"]]);
+    assert!(d.verdict.complete, "{}", d.verdict.text);
+    check_near(&d, "J1", 0.07, 0.01);
+    check_near(&d, "a", WEIGHT, 0.01);
+    check_near(&d, "m", SHARE, 0.02);
+}
+
+/// Half a step of the encoder hides most of it, but it does not bend the rest.
+#[test]
+fn a_little_dry_friction_beside_it_does_not_hide_what_the_gears_do() {
+    let d = diagnose("arm", arm(0.1).as_bytes());
     let found = classes(&d).concat();
     for effect in ["gravity", "load_dependent_friction"] {
         assert!(found.contains(&effect), "{effect}: {}", d.verdict.text);
     }
-    assert!(d.verdict.complete, "{}", d.verdict.text);
+    check_near(&d, "J1", 0.07, 0.01);
     check_near(&d, "a", WEIGHT, 0.03);
     check_near(&d, "m", SHARE, 0.03);
 }

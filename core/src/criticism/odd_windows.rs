@@ -47,7 +47,7 @@ impl Fit {
     pub fn mend_odd_windows(&mut self, data: &Data, scales: &Scales) {
         let model = self.structure.model(&self.values);
         let sees_load = self.sees_load(data);
-        if !sees_load && model.friction.breakaway() == 0.0 && model.is_same_everywhere() {
+        if !sees_load && !model.may_stick() && model.is_same_everywhere() {
             return;
         }
         let costs = window_costs(data, &self.motion);

@@ -154,6 +154,7 @@ impl OneWay {
             && model.load.is_none()
             && model.force_ramp == 0.0
             && model.own_forces.is_empty()
+            && model.gear_friction == 0.0
             && model.output_maps.is_empty()
             && model.inertia == self.scales.inertia
             && model.viscous == self.scales.viscous;

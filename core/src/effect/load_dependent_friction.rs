@@ -1,4 +1,4 @@
-//! Friction that grows with the load of the gear: what the motor pushes, the teeth rub.
+//! Friction that grows with the load of the gear: what motor and load push, the teeth rub.
 //!
 //! It comes beside the friction that is always there.
 
@@ -24,15 +24,15 @@ impl Effect for LoadDependentFriction {
     }
 
     fn sentence(&self) -> &'static str {
-        "The harder the motor pushes, the harder the teeth of the gear are pressed together and the more they rub."
+        "The harder motor and load push against each other, the harder the teeth of the gear are pressed together and the more they rub."
     }
 
     fn equation(&self) -> &'static str {
-        "F = -m |u| sgn(v) while moving; at rest it holds against the share m of the input"
+        "F = -m |u - F_L| sgn(v) while moving, with F_L what gravity, springs and loads add to u; at rest it holds against as much"
     }
 
     fn source(&self) -> &'static str {
-        "Hirschkorn and Kövecses, The role of the normal force in the observed friction of gears, 2013; Dupont, 1990"
+        "M. Duclusaud and others, Extended friction models for the physics simulation of servo actuators, 2024; Dupont, 1990"
     }
 
     fn kinds(&self) -> &'static [Kind] {
@@ -42,7 +42,7 @@ impl Effect for LoadDependentFriction {
     fn parameters(&self) -> &'static [ParameterSpec] {
         &[ParameterSpec {
             symbol: "m",
-            label: "share of the input that friction takes",
+            label: "share of what the gear carries that friction takes",
             dimension: Dimension::Ratio,
             range: Range::UnitInterval,
         }]
@@ -66,15 +66,6 @@ impl Effect for LoadDependentFriction {
     }
 
     fn apply(&self, values: &[f64], model: &mut Model) {
-        let share = values[0];
-        model.own_forces.push(Box::new(move |now| {
-            // At rest it holds as far as it can, which is against its share of the push.
-            let sign = if now.velocity == 0.0 {
-                now.input
-            } else {
-                now.velocity
-            };
-            -share * now.input.abs() * if sign == 0.0 { 0.0 } else { sign.signum() }
-        }));
+        model.gear_friction += values[0];
     }
 }

@@ -69,6 +69,7 @@ impl<'m> Engine<'m> {
     pub fn new(model: &'m Model) -> Self {
         let smooth = model.forces.is_empty()
             && model.own_forces.is_empty()
+            && model.gear_friction == 0.0
             && model.friction.static_excess == 0.0
             && model.friction.rise == 0.0;
         Self {
@@ -336,12 +337,7 @@ impl<'m> Engine<'m> {
         if self.model.own_forces.is_empty() {
             return force;
         }
-        let at = Instant {
-            position: x,
-            velocity: v,
-            input: state.motion.z,
-            time: state.time,
-        };
+        let at = instant(state, x, v);
         force + self.model.own_forces.iter().map(|f| f(&at)).sum::<f64>()
     }
 
@@ -358,7 +354,7 @@ impl<'m> Engine<'m> {
         Held {
             body: body + self.slower(state, body),
             load: between,
-            level: model.friction.level_at(x, v),
+            level: model.friction.level_at(x, v) + model.level_of_gear(&instant(state, x, v)),
         }
     }
 
@@ -424,5 +420,15 @@ impl<'m> Engine<'m> {
                 self.count(1);
             }
         }
+    }
+}
+
+/// What acts in a state moved to `x` and `v`, as a force sees it.
+fn instant(state: &State, x: f64, v: f64) -> Instant {
+    Instant {
+        position: x,
+        velocity: v,
+        input: state.motion.z,
+        time: state.time,
     }
 }

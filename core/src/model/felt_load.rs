@@ -86,6 +86,7 @@ impl Felt<'_> {
             let acting = input + model.early_load(time) + late + ramp * time + forces + own;
             let rest = acting - model.viscous * velocity - model.inertia * pushed;
             let level = model.friction.level_at(position, velocity).max(0.0);
+            let level = level + model.level_of_gear(&instant);
             if velocity == 0.0 {
                 rest.signum() * (rest.abs() - level).max(0.0)
             } else {

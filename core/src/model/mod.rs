@@ -20,6 +20,7 @@ mod flight;
 mod flow;
 mod followed;
 mod friction;
+mod gear;
 mod impacts;
 mod joint;
 mod load;
@@ -145,6 +146,8 @@ pub struct Model {
     pub forces: Vec<BodyForce>,
     /// Forces of the user's own making.
     pub own_forces: Vec<OwnForce>,
+    /// Friction of a gear, as a share of what its teeth carry; 0 to 1.
+    pub gear_friction: f64,
     /// A second body behind a joint or a gap.
     pub load: Option<Load>,
     /// An encoder that is not centred on its shaft.
@@ -176,6 +179,7 @@ impl Model {
             friction: DryFriction::default(),
             forces: Vec::new(),
             own_forces: Vec::new(),
+            gear_friction: 0.0,
             load: None,
             encoder: None,
             output_maps: Vec::new(),
@@ -187,6 +191,7 @@ impl Model {
     pub fn is_same_everywhere(&self) -> bool {
         self.forces.is_empty()
             && self.own_forces.is_empty()
+            && self.gear_friction == 0.0
             && self.encoder.is_none()
             && self.friction.rise == 0.0
     }
@@ -228,6 +233,11 @@ impl Model {
         }
     }
 
+    /// Whether friction may hold the body at rest.
+    pub fn may_stick(&self) -> bool {
+        self.friction.breakaway() > 0.0 || self.gear_friction > 0.0
+    }
+
     /// Output after the static maps.
     pub fn map_output(&self, y: f64) -> f64 {
         self.output_maps.iter().fold(y, |y, map| map(y))
@@ -253,6 +263,7 @@ impl std::fmt::Debug for Model {
             .field("friction", &self.friction)
             .field("forces", &self.forces.len())
             .field("own_forces", &self.own_forces.len())
+            .field("gear_friction", &self.gear_friction)
             .field("load", &self.load)
             .field("encoder", &self.encoder)
             .field("output_maps", &self.output_maps.len())

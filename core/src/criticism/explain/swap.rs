@@ -250,10 +250,14 @@ impl Explain {
             return;
         }
         let best = self.best;
-        self.rivals = rivals
-            .into_iter()
-            .filter(|r| alike.contains(&r.trial) && agree(best, r.trial))
-            .collect();
+        // What no model explains bends each of them, some more than others: there two are one class unless one is better.
+        let noise = self.is_noise(session, best);
+        let may_be = |r: &Rival| {
+            alike.contains(&r.trial)
+                || !noise && !self.difference(session, r.trial, best).is_better()
+        };
+        let of_class = |r: &Rival| agree(best, r.trial) && may_be(r);
+        self.rivals = rivals.into_iter().filter(of_class).collect();
         if let Some(share) = self.quiet_share(session) {
             session.quieten(share);
         } else if self.wanders(session) {

@@ -308,7 +308,7 @@ impl Fit {
             trial.polish_lost(&self.motion, data, scales);
         } else if data.excitation.sees_load_of(&model) {
             trial.polish_until(present, data, scales);
-        } else if model.friction.breakaway() > 0.0 {
+        } else if model.may_stick() {
             trial.polish_once(data, scales);
         }
         (trial.starts, trial.motion)

@@ -18,7 +18,8 @@ impl Engine<'_> {
     /// Whether a turn matters: a user's own force acts, and no friction of the library holds the body.
     pub(super) fn may_jump(&self) -> bool {
         let model = self.model;
-        !model.own_forces.is_empty() && model.load.is_none() && model.friction.level <= 0.0
+        let rubs = model.friction.level > 0.0 || model.gear_friction > 0.0;
+        !model.own_forces.is_empty() && model.load.is_none() && !rubs
     }
 
     /// A step of `h` seconds, stopped and begun anew where the body turns and a force jumps.
