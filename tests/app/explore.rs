@@ -265,7 +265,7 @@ fn what_a_page_does_not_show_of_a_scenario_is_said() {
             .as_str()
             .unwrap_or_else(|| panic!("{name}: {state}"));
         assert!(
-            said.contains(&format!("leaves out: {keys}")),
+            said.contains(&format!("in the file: {keys}.")),
             "{name}: {said}"
         );
         harness.get_by_label_contains("hysteron simulate");

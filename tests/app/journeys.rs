@@ -90,8 +90,8 @@ fn a_card_is_pressed_as_a_whole() {
             "How wide is a gap that nobody can see?",
             "backlash",
         ),
-        ("lessons", "A thermostat knows two things", "explore"),
-        ("compare", "A drive that answers late", "compare"),
+        ("lessons", "A thermostat knows only two things", "explore"),
+        ("compare", "A drive that responds late", "compare"),
     ] {
         let mut visitor = Visitor::new();
         show(&mut visitor.app, &format!("v1;{page}"));

@@ -365,7 +365,10 @@ fn a_refused_link_says_why_in_one_sentence_and_changes_nothing() {
         ),
         ("v1;compare;compare.mystery=AAAA", "another version"),
         ("v1;compare;compare.mystery=AQ-not", "no mystery"),
-        ("v1;compare;compare.mystery=%C3%A4", "letters"),
+        (
+            "v1;compare;compare.mystery=%C3%A4",
+            "characters that do not belong",
+        ),
         ("v1;compare;compare.mystery=7", "cannot be read"),
         (
             "v1;compare;compare.mystery=AQ;compare.file=drive-02",

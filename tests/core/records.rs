@@ -336,7 +336,7 @@ fn a_room_that_wanders_is_no_effect_and_hides_none() {
             check(&d, missing);
             assert!(!d.verdict.complete, "{}", d.verdict.text);
             assert!(
-                d.verdict.text.to_string().contains("wanders"),
+                d.verdict.text.to_string().contains("drifts slowly"),
                 "{}",
                 d.verdict.text
             );

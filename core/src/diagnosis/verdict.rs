@@ -98,7 +98,7 @@ impl Verdict {
     /// Puts the experiments into words.
     pub(crate) fn say_experiments(&mut self) {
         let texts = self.experiments.iter().map(|e| &e.text);
-        self.next_experiment = Some(Message::list(" ", texts));
+        self.next_experiment = Some(texts.fold(Message::default(), Message::and));
     }
 
     /// Puts a proposal in the place of another, in words too; one that is not there changes nothing.
