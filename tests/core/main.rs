@@ -54,6 +54,7 @@ mod simulation;
 mod slow_and_short;
 mod surroundings;
 mod swinging;
+mod taken_out;
 mod tuning;
 mod tuning_coverage;
 mod tuning_logs;

@@ -176,6 +176,13 @@ impl DiagnosisJob {
         self
     }
 
+    /// The same as if the library had none of these effects: what is said then of a machine that has them?
+    #[must_use]
+    pub fn lacking(mut self, effects: &[EffectId]) -> Self {
+        self.search.session.lacking = effects.to_vec();
+        self
+    }
+
     /// Does some work.
     pub fn advance(&mut self) -> Progress<Diagnosis> {
         if self.search.advance() {

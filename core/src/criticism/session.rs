@@ -131,6 +131,8 @@ pub(super) struct Session {
     pub knowledge: Knowledge,
     /// Effects of the user's own.
     own: Vec<&'static dyn Effect>,
+    /// Effects that are not to be known.
+    pub lacking: Vec<EffectId>,
     /// Part of the data on which starting points are tried.
     pub scout: Data,
     pub scales: Scales,
@@ -206,6 +208,7 @@ impl Session {
             scout: compared.scout(),
             knowledge,
             own,
+            lacking: Vec::new(),
             baseline: None,
             full: (compared.used() < data.used()).then_some(data),
             data: compared,
@@ -259,7 +262,8 @@ impl Session {
 
     /// Effects that may be in a model: those of the library and the user's own.
     fn known(&self) -> impl Iterator<Item = &'static dyn Effect> {
-        effect::for_kind(self.kind()).chain(self.own.iter().copied())
+        let all = effect::for_kind(self.kind()).chain(self.own.iter().copied());
+        all.filter(|e| !self.lacking.contains(&e.id()))
     }
 
     /// Those that say something which the baseline does not.
