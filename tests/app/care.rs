@@ -3,7 +3,9 @@
 
 use std::path::PathBuf;
 
-use crate::support::ui::{App, TALL, WIDE, app, click, finish, finish_when, show, state, texts};
+use crate::support::ui::{
+    App, Dropped, TALL, WIDE, app, click, finish, finish_when, show, state, texts,
+};
 use egui::epaint::{ClippedShape, Shape};
 use egui::{Event, Key, Modifiers, Rect, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -259,20 +261,6 @@ fn each_page_stands_where_it_was_left() {
     let mut fresh = app("explore", [1000.0, 500.0]);
     show(&mut fresh, "v1;explore;explore.paused=20");
     assert!((after - headline(&fresh)).abs() < 0.5, "{after}");
-}
-
-/// A file that is let go over the window.
-#[derive(Debug)]
-struct Dropped(PathBuf, Vec<u8>);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &std::path::Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        Ok(self.1.clone())
-    }
 }
 
 /// Drops a file and waits until the page has said something about it, or opened it.

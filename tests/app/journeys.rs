@@ -1,9 +1,8 @@
 //! Ways through the app by clicks alone, counted: on what is in view, without keys, links or scrolling.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::support::ui::{App, WIDE, app, finish, finish_when, show, state, texts};
+use crate::support::ui::{App, Dropped, WIDE, app, finish, finish_when, show, state, texts};
 use egui::Rect;
 use egui_kittest::kittest::Queryable as _;
 use hysteron_core::effect::EffectId;
@@ -124,20 +123,6 @@ fn logged() -> Vec<u8> {
         rows.push(numbers.collect::<Vec<_>>().join(";"));
     }
     rows.join("\n").into_bytes()
-}
-
-/// A file that is let go over the window.
-#[derive(Debug)]
-struct Dropped(PathBuf, Vec<u8>);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &std::path::Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        Ok(self.1.clone())
-    }
 }
 
 /// From an open record to the formula in the model.

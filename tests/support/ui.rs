@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test uses a part of these")]
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use egui::epaint::{ClippedShape, Shape};
@@ -21,6 +22,20 @@ pub const NARROW: [f32; 2] = [420.0, 800.0];
 
 /// A window so tall that nothing is below the fold.
 pub const TALL: [f32; 2] = [1600.0, 2400.0];
+
+/// A file that is let go over the window.
+#[derive(Debug)]
+pub struct Dropped(pub PathBuf, pub Vec<u8>);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Ok(self.1.clone())
+    }
+}
 
 /// Where the app can be, so that all its pages, their steps, and what they say in several cases are seen.
 pub const PLACES: [&str; 50] = [

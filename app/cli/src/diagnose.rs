@@ -13,6 +13,7 @@ use crate::batch;
 use crate::one::{Setup, of, one};
 use crate::output::{Format, finish};
 use crate::progress_line::ProgressLine;
+use crate::read::{bytes_of, shown};
 
 /// One file by the contract of a single one; many files, or a file to resume from, as a batch.
 pub fn run(arguments: &Arguments) -> ExitCode {
@@ -34,21 +35,10 @@ pub fn run(arguments: &Arguments) -> ExitCode {
 }
 
 fn read_model(path: &Path) -> Result<UserModel, Message> {
-    let shown = path.display();
-    let bytes = std::fs::read(path).map_err(|e| {
-        msg!(
-            "{} cannot be read: {}",
-            Message::name(shown.to_string()),
-            Message::name(e.to_string())
-        )
-    })?;
-    let text = str::from_utf8(&bytes).map_err(|_| {
-        msg!(
-            "{}: a model must be UTF-8 text",
-            Message::name(shown.to_string())
-        )
-    })?;
-    UserModel::from_toml(text).map_err(|e| msg!("{}, {}", Message::name(shown.to_string()), e))
+    let bytes = bytes_of(path)?;
+    let text =
+        str::from_utf8(&bytes).map_err(|_| msg!("{}: a model must be UTF-8 text", shown(path)))?;
+    UserModel::from_toml(text).map_err(|e| msg!("{}, {}", shown(path), e))
 }
 
 /// The report, or one line that says what is wrong with the input.

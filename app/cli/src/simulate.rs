@@ -14,6 +14,7 @@ use hysteron_core::simulate::{Cut, Noise, Trajectory};
 use hysteron_core::uncertain::digits;
 
 use crate::output::say_lines;
+use crate::read::{bytes_of, shown};
 
 /// Digits of a velocity that is said.
 const DIGITS: i32 = 7;
@@ -34,12 +35,10 @@ pub struct Arguments {
 
 /// What happened in words, or one line that says what is wrong with the input.
 pub fn run(arguments: &Arguments) -> Result<String, Message> {
-    let shown = arguments.file.display();
+    let shown = || shown(&arguments.file);
     let (mut text, table, samples) = match read(&arguments.file)? {
         AnyScenario::Loop(scenario) => {
-            let run = scenario
-                .run()
-                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
+            let run = scenario.run().map_err(|e| msg!("{}: {}", shown(), e))?;
             let noise = scenario.options.noise;
             let samples = (run.time.as_slice(), run.output.as_slice());
             (
@@ -49,13 +48,11 @@ pub fn run(arguments: &Arguments) -> Result<String, Message> {
             )
         }
         AnyScenario::OnOff(scenario) => {
-            let run = scenario
-                .run()
-                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
+            let run = scenario.run().map_err(|e| msg!("{}: {}", shown(), e))?;
             let end = run.time.last().copied().unwrap_or(0.0);
             let mut said = switched(run.switches.len(), end, run.cut);
-            let cycle = on_off::settled(&scenario.on_off)
-                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
+            let cycle =
+                on_off::settled(&scenario.on_off).map_err(|e| msg!("{}: {}", shown(), e))?;
             say_settled(&mut said, &cycle.text, scenario.noise);
             let samples = (run.time.as_slice(), run.output.as_slice());
             (
@@ -65,15 +62,14 @@ pub fn run(arguments: &Arguments) -> Result<String, Message> {
             )
         }
         AnyScenario::Servo(scenario) => {
-            let located = |e: HuntingError| msg!("{}: {}", Message::name(shown.to_string()), e);
+            let located = |e: HuntingError| msg!("{}: {}", shown(), e);
             let run = scenario.run().map_err(located)?;
             let found = hunting::settled(&scenario.servo).map_err(|e| located(e.into()))?;
             let said = servo_summary(&run, &found.text, scenario.noise);
             (said, servo_table(&run, scenario.noise), run.time.len())
         }
         AnyScenario::Drive(input) => {
-            let run = drive::run(&input)
-                .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
+            let run = drive::run(&input).map_err(|e| msg!("{}: {}", shown(), e))?;
             let said = drive_summary(&input, &run);
             (said, drive_table(&run), run.time.len())
         }
@@ -97,29 +93,19 @@ pub fn run(arguments: &Arguments) -> Result<String, Message> {
 
 /// Reads a scenario file.
 pub fn read(path: &Path) -> Result<AnyScenario, Message> {
-    let shown = path.display();
     if path.is_dir() {
-        return Err(msg!(
-            "{} is a directory; expected a TOML file",
-            Message::name(shown.to_string())
-        ));
+        return Err(msg!("{} is a directory; expected a TOML file", shown(path)));
     }
-    let bytes = std::fs::read(path).map_err(|e| {
-        msg!(
-            "{} cannot be read: {}",
-            Message::name(shown.to_string()),
-            Message::name(e.to_string())
-        )
-    })?;
+    let bytes = bytes_of(path)?;
     let text = std::str::from_utf8(&bytes).map_err(|e| {
         let line = bytes[..e.valid_up_to()].split(|b| *b == b'\n').count();
         msg!(
             "{}, line {}: not UTF-8 text; expected a TOML file",
-            Message::name(shown.to_string()),
+            shown(path),
             line
         )
     })?;
-    AnyScenario::from_toml(text).map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))
+    AnyScenario::from_toml(text).map_err(|e| msg!("{}: {}", shown(path), e))
 }
 
 /// How many switches there were, and why no more.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use hysteron_core::diagnosis::{
     Candidate, Diagnosis, Discovery, InputCheck, InputVerdict, NextExperiment, Parameter, Step,
 };
-use hysteron_core::effect::{EffectId, name_of};
+use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Kind;
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
@@ -165,15 +165,7 @@ fn describe_step(out: &mut String, step: &Step, before: Option<&Step>, is_last: 
 
 /// What was added to and taken from the model before, such as `+ Coulomb friction`.
 fn change(step: &Step, before: &Step) -> Message {
-    let only_in = |a: &Step, b: &Step| {
-        let of_a = a.effects.iter().filter(|e| !b.effects.contains(e));
-        of_a.map(|e| name_of(*e)).collect::<Vec<_>>()
-    };
-    let added = only_in(step, before);
-    let added = added.into_iter().map(|name| msg!("+ {}", name));
-    let taken = only_in(before, step);
-    let taken = taken.into_iter().map(|name| msg!("- {}", name));
-    let changes = Message::list(" ", added.chain(taken));
+    let changes = step.changes_from(before);
     if changes.is_empty() {
         "Refitted".into()
     } else {

@@ -17,6 +17,7 @@ use serde_json::json;
 
 use crate::arguments::Kind;
 use crate::output::Format;
+use crate::read::{bytes_of, shown};
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -201,31 +202,24 @@ fn options(arguments: &Arguments) -> Result<ImportOptions, Message> {
 }
 
 fn of_file(file: &Path, arguments: &Arguments, wishes: &Wishes) -> Result<MeasuredTuning, Message> {
-    let shown = file.display();
     if file.is_dir() {
         return Err(msg!(
             "{} is a directory; expected a CSV or MATLAB file, or a log",
-            Message::name(shown.to_string())
+            shown(file)
         ));
     }
-    let bytes = std::fs::read(file).map_err(|e| {
-        msg!(
-            "{} cannot be read: {}",
-            Message::name(shown.to_string()),
-            Message::name(e.to_string())
-        )
-    })?;
+    let bytes = bytes_of(file)?;
     let name = file
         .file_name()
         .unwrap_or(file.as_os_str())
         .to_string_lossy();
     let opened = open(&name, &bytes, &options(arguments)?).map_err(|e| match e {
-        OpenError::Log(e) => msg!("{}: {}", Message::name(shown.to_string()), e),
+        OpenError::Log(e) => msg!("{}: {}", shown(file), e),
         OpenError::Import(e) => e.message(),
     })?;
     let mut result = opened
         .tune(wishes)
-        .map_err(|e| msg!("{}: {}", Message::name(shown.to_string()), e))?;
+        .map_err(|e| msg!("{}: {}", shown(file), e))?;
     result.name = name.into_owned();
     Ok(result)
 }

@@ -6,8 +6,9 @@ use super::error::CriticismError;
 use super::parameter::Parameter;
 use super::relay_loop::LoopError;
 use super::residual_test::ResidualTest;
-use crate::effect::EffectId;
+use crate::effect::{EffectId, name_of};
 use crate::message::Message;
+use crate::msg;
 
 /// A region in which the error concentrates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -101,5 +102,19 @@ impl Step {
         } else {
             Err(CriticismError::NotFinite)
         }
+    }
+
+    /// What was added to and taken from the model `before`, such as `+ Coulomb friction`; nothing where it was fitted
+    /// anew.
+    pub fn changes_from(&self, before: &Self) -> Message {
+        let only_in = |a: &Self, b: &Self| {
+            let of_a = a.effects.iter().filter(|e| !b.effects.contains(e));
+            of_a.map(|e| name_of(*e)).collect::<Vec<_>>()
+        };
+        let added = only_in(self, before);
+        let added = added.into_iter().map(|name| msg!("+ {}", name));
+        let taken = only_in(before, self);
+        let taken = taken.into_iter().map(|name| msg!("- {}", name));
+        Message::list(" ", added.chain(taken))
     }
 }

@@ -5,7 +5,7 @@ use super::input::Tongue;
 use super::svg::{Axis, Bar, Chart, bars, range};
 use crate::curve::envelope;
 use crate::diagnosis::{Finding, MissingPart, Profile, ReplayChannel, Step};
-use crate::effect::{StepPart, name_of};
+use crate::effect::StepPart;
 use crate::measurement::{Channel, Measurement, less_model};
 use crate::message::Message;
 use crate::msg;
@@ -78,15 +78,7 @@ fn change(step: &Step, before: Option<&Step>) -> Message {
     let Some(before) = before else {
         return "baseline".into();
     };
-    let only_in = |a: &Step, b: &Step| {
-        let of_a = a.effects.iter().filter(|e| !b.effects.contains(e));
-        of_a.map(|e| name_of(*e)).collect::<Vec<_>>()
-    };
-    let added = only_in(step, before);
-    let added = added.into_iter().map(|name| msg!("+ {}", name));
-    let taken = only_in(before, step);
-    let taken = taken.into_iter().map(|name| msg!("- {}", name));
-    let changes = Message::list(" ", added.chain(taken));
+    let changes = step.changes_from(before);
     if changes.is_empty() {
         "refitted".into()
     } else {
