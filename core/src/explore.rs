@@ -81,7 +81,7 @@ impl ExploreError {
 says!(ExploreError);
 
 /// What there is to see.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExploreData {
     /// Nyquist curve `P(jw)` with all delays, as real and imaginary parts.
     pub nyquist: Vec<[f64; 2]>,

@@ -1,5 +1,7 @@
 //! The relay loop of the paper's Figs. 3, 4 and 5: what they show, and whether it is so.
 
+use serde::{Deserialize, Serialize};
+
 use crate::explore::{ExploreData, ExploreError, ExploreInput, compute};
 use crate::message::{Message, fixed, signed};
 use crate::msg;
@@ -21,7 +23,7 @@ pub struct Figure {
 }
 
 /// One part of a claim, with its numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// What is compared.
     pub text: Message,

@@ -1,13 +1,37 @@
 //! Loops other than the plain relay: on-off controllers as they are built, drives with a controller, and files of them.
 
-use hysteron_core::explore::ExploreInput;
+use hysteron_core::explore::{self, ExploreData, ExploreInput};
+use hysteron_core::figures::{Check, checks};
 use hysteron_core::hunting::{self, HuntingData};
 use hysteron_core::message::Message;
 use hysteron_core::on_off::{self, OnOffData, OnOffInput};
 use hysteron_core::scenario::{AnyScenario, keys_of_run};
 
-use crate::tasks::{News, OnOffTask, ReadScenario, ScenarioReport, ScenarioTask, ServoTask};
+use crate::tasks::{
+    LoopTask, News, OnOffTask, ReadScenario, ScenarioReport, ScenarioTask, ServoTask,
+};
 use crate::work::{Say, Work};
+
+impl LoopTask {
+    /// What there is to see, and what becomes of the figure's claim.
+    ///
+    /// # Errors
+    /// Why the loop cannot be computed.
+    pub fn view(&self) -> Result<(ExploreData, Vec<Check>), Message> {
+        let data = explore::compute(&self.input)?;
+        let claims = match self.figure {
+            Some(number) => checks(number, &self.input, &data)?,
+            None => Vec::new(),
+        };
+        Ok((data, claims))
+    }
+}
+
+impl Work for LoopTask {
+    fn run(self, say: Say<'_, (ExploreData, Vec<Check>)>) {
+        tell(self.view(), say);
+    }
+}
 
 impl Work for OnOffTask {
     fn run(self, say: Say<'_, OnOffData>) {

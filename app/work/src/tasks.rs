@@ -6,7 +6,8 @@ use hysteron_core::by_hand::HandReplay;
 use hysteron_core::diagnosis::{Discovery, FittedModel, Limits, NextExperiment, StepReport};
 use hysteron_core::drive::DriveInput;
 use hysteron_core::effect::EffectId;
-use hysteron_core::explore::ExploreInput;
+use hysteron_core::explore::{ExploreData, ExploreInput};
+use hysteron_core::figures::Check;
 use hysteron_core::hunting::{HuntingData, Servo};
 use hysteron_core::maps::{MapInput, Tile};
 use hysteron_core::measurement::{FoundColumn, Measurement};
@@ -189,6 +190,20 @@ pub struct OnOffTask(pub OnOffInput);
 impl Task for OnOffTask {
     const NAME: &'static str = "on-off";
     type Report = OnOffData;
+}
+
+/// Computes a relay loop and, where it is one of the paper's figures, checks its claim.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoopTask {
+    /// The loop.
+    pub input: ExploreInput,
+    /// Number of the figure.
+    pub figure: Option<u32>,
+}
+
+impl Task for LoopTask {
+    const NAME: &'static str = "loop";
+    type Report = (ExploreData, Vec<Check>);
 }
 
 /// Follows a drive with a controller of its position.

@@ -6,8 +6,9 @@ use wasm_bindgen::prelude::*;
 use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
 
 use crate::tasks::{
-    DiscoveryTask, ExperimentTask, GapTask, HandTask, MapTask, MeasuredTask, MysteryTask, News,
-    OnOffTask, READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _, TuneTask,
+    DiscoveryTask, ExperimentTask, GapTask, HandTask, LoopTask, MapTask, MeasuredTask, MysteryTask,
+    News, OnOffTask, READY, ReadTask, RevealTask, ScenarioTask, ServoTask, StepTask, Task as _,
+    TuneTask,
 };
 use crate::wire::{pack, unpack};
 use crate::work::Work;
@@ -61,6 +62,7 @@ fn work(scope: &DedicatedWorkerGlobalScope, message: &Array) -> Result<(), Strin
         MysteryTask::NAME => run::<MysteryTask>(scope, &task),
         RevealTask::NAME => run::<RevealTask>(scope, &task),
         TuneTask::NAME => run::<TuneTask>(scope, &task),
+        LoopTask::NAME => run::<LoopTask>(scope, &task),
         OnOffTask::NAME => run::<OnOffTask>(scope, &task),
         ServoTask::NAME => run::<ServoTask>(scope, &task),
         ScenarioTask::NAME => run::<ScenarioTask>(scope, &task),

@@ -3,13 +3,14 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex;
+use serde::{Deserialize, Serialize};
 
 use super::ExactCycle;
 use crate::plant::TransferFunction;
 use crate::relay::Relay;
 
 /// One harmonic of the output, `amplitude cos(n w t + phase)` with `t = 0` at the relay's rise.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Harmonic {
     /// Order `n`, from 1.
     pub order: usize,

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use num_complex::Complex;
+use serde::{Deserialize, Serialize};
 
 use super::{
     Cycle, ExactCycle, Existence, Intersection, Outcome, TRUSTED_DISTORTION, continuum,
@@ -32,7 +33,7 @@ pub struct Prediction {
 }
 
 /// How far the describing function can be trusted.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
     /// It agrees with the exact cycle, and the plant filters the harmonics.
     pub reliable: bool,

@@ -16,14 +16,14 @@ mod theory;
 
 use std::collections::VecDeque;
 
-use hysteron_core::explore::{ExploreData, ExploreInput, compute};
-use hysteron_core::figures::{Check, checks, figures};
+use hysteron_core::explore::{ExploreData, ExploreInput};
+use hysteron_core::figures::{Check, figures};
 use hysteron_core::message::Message;
 
 use crate::desk::Desk;
 use crate::export::Table;
 use crate::files::Files;
-use crate::jobs::Job;
+use crate::jobs::{Job, ended};
 use crate::language::tr;
 use crate::layout;
 use crate::page::{Hint, Offer, Page, View};
@@ -32,7 +32,7 @@ use crate::widgets::controls::claim_ui;
 use crate::widgets::playback::Playback;
 use crate::widgets::relay_loop::{self, TABLES, tables};
 use controller::Controller;
-use hysteron_work::tasks::{ScenarioReport, ScenarioTask};
+use hysteron_work::tasks::{LoopTask, ScenarioReport, ScenarioTask};
 use nyquist::Nyquist;
 use on_off::OnOff;
 use plant_editor::PlantEditor;
@@ -60,6 +60,10 @@ pub struct Explore {
     /// Where the line can be taken hold of, for tests.
     line_at: Option<egui::Pos2>,
     finished: Option<Finished>,
+    /// A loop with noise, which takes longer than a frame has.
+    computing: Option<Job<LoopTask>>,
+    /// What that is of.
+    asked: Option<LoopTask>,
     /// How long the last computations took, s.
     took: VecDeque<f64>,
     controller: Controller,
@@ -89,8 +93,7 @@ enum About {
 
 /// What was computed, and for what.
 struct Finished {
-    input: ExploreInput,
-    figure: Option<u32>,
+    asked: LoopTask,
     data: Result<(ExploreData, Vec<Check>), Message>,
 }
 
@@ -107,6 +110,7 @@ pub fn page() -> Page {
 impl View for Explore {
     fn update(&mut self, ctx: &egui::Context) {
         self.take_files(ctx);
+        self.take_noisy();
         self.on_off.update();
         self.servo.update();
     }
@@ -115,7 +119,7 @@ impl View for Explore {
         self.input.clone_from(&desk.relay_loop);
         self.take_scenario(&mut desk.commands);
         match self.about() {
-            About::Relay => self.compute(),
+            About::Relay => self.compute(ui.ctx()),
             About::OnOff => self.on_off.ask(ui.ctx(), self.controller, &self.input),
             About::Servo => self.servo.ask(ui.ctx()),
         }
@@ -189,7 +193,7 @@ impl Explore {
         let data = self.data();
         let cycle = |c: hysteron_core::limit_cycle::Cycle| serde_json::json!({"period": c.period, "amplitude": c.amplitude});
         serde_json::json!({
-            "busy": false,
+            "busy": self.computing.is_some(),
             "compute_ms": self.usual_time().map(|t| 1e3 * t),
             "answer": data.map(|(d, _)| d.text.clone()),
             "stability": data.map(|(d, _)| d.stability.clone()),
@@ -220,30 +224,43 @@ impl Explore {
 }
 
 impl Explore {
-    /// Computes anew if something was changed.
-    fn compute(&mut self) {
-        let known = self
-            .finished
-            .as_ref()
-            .is_some_and(|f| f.input == self.input && f.figure == self.figure);
-        if known {
+    /// Computes anew if something was changed: at once, or with noise beside the frames, one after the other.
+    fn compute(&mut self, ctx: &egui::Context) {
+        if self.is_current() {
             return;
         }
-        let begin = web_time::Instant::now();
-        let data = compute(&self.input).and_then(|data| {
-            let claims = match self.figure {
-                Some(number) => checks(number, &self.input, &data)?,
-                None => Vec::new(),
-            };
-            Ok((data, claims))
-        });
-        self.took.truncate(REMEMBERED - 1);
-        self.took.push_front(begin.elapsed().as_secs_f64());
-        self.finished = Some(Finished {
+        let asked = LoopTask {
             input: self.input.clone(),
             figure: self.figure,
-            data: data.map_err(Message::from),
-        });
+        };
+        if self.input.noise.is_some() {
+            if self.computing.is_none() {
+                self.asked = Some(asked.clone());
+                self.computing = Some(Job::run(ctx, asked));
+            }
+            return;
+        }
+        self.computing = None;
+        let begin = web_time::Instant::now();
+        let data = asked.view();
+        self.took.truncate(REMEMBERED - 1);
+        self.took.push_front(begin.elapsed().as_secs_f64());
+        self.finished = Some(Finished { asked, data });
+    }
+
+    /// Takes a loop with noise that was computed.
+    fn take_noisy(&mut self) {
+        if let Some(data) = ended(&mut self.computing, |_, _| ())
+            && let Some(asked) = self.asked.take()
+        {
+            self.finished = Some(Finished { asked, data });
+        }
+    }
+
+    /// Whether what was computed is of what is set now.
+    fn is_current(&self) -> bool {
+        let asked = self.finished.as_ref().map(|f| &f.asked);
+        asked.is_some_and(|a| a.input == self.input && a.figure == self.figure)
     }
 
     /// Median time of the last computations, s.
@@ -365,11 +382,12 @@ impl Explore {
             About::Servo => return self.servo.answer_ui(ui),
         }
         match self.finished.as_ref().map(|f| &f.data) {
-            Some(Ok((data, _))) => theme::answer_ui(ui, &data.text),
-            Some(Err(error)) => {
+            Some(Ok((data, _))) if self.is_current() => theme::answer_ui(ui, &data.text),
+            Some(Ok((data, _))) => theme::answer_of_before_ui(ui, &data.text),
+            Some(Err(error)) if self.is_current() => {
                 ui.colored_label(ui.visuals().warn_fg_color, tr(error));
             }
-            None => {}
+            _ => theme::answer_ui(ui, "Computing ..."),
         }
     }
 
@@ -405,12 +423,11 @@ impl Explore {
                     table::harmonics_ui(ui, data);
                 }
                 if let Some(Finished {
-                    input,
+                    asked,
                     data: Ok((data, _)),
-                    ..
                 }) = &self.finished
                 {
-                    self.theory.ui(ui, input, data);
+                    self.theory.ui(ui, &asked.input, data);
                 }
                 table::equations_ui(ui);
             }
