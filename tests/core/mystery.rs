@@ -109,6 +109,7 @@ fn a_diagnosis_finds_what_is_hidden_and_the_truth_gives_it_the_points() {
         (Experiment::ProcessBinary, &["sensor_lag"]),
         (Experiment::ProcessRelay, &["input_delay", "load_ramp"]),
         (Experiment::ProcessStairs, &["input_delay", "saturation"]),
+        (Experiment::ProcessStairs, &["underdamped"]),
         (Experiment::ProcessStairs, &["static_curvature"]),
         (Experiment::ProcessStairs, &["second_lag", "constant_load"]),
         (Experiment::ProcessRelay, &[]),

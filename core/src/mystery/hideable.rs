@@ -48,7 +48,7 @@ pub struct Hideable {
     /// Experiments in which it can be told from the others.
     pub shown_by: &'static [Experiment],
     /// Two of one family act too much alike, or in one place, to be hidden together.
-    pub(super) family: Family,
+    pub(super) families: &'static [Family],
     pub(super) hide: Hide,
 }
 
@@ -109,7 +109,8 @@ impl Hideable {
     /// Whether the bench can hide both.
     pub fn goes_with(&self, other: &Self) -> bool {
         let part = |a: &Self, b: &Self| a.effect().is_some_and(|e| e.has_part(b.id));
-        self.family != other.family && !part(self, other) && !part(other, self)
+        let apart = self.families.iter().all(|f| !other.families.contains(f));
+        apart && !part(self, other) && !part(other, self)
     }
 
     /// Hides it.

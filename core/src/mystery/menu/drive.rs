@@ -13,7 +13,7 @@ pub(super) const MENU: &[Hideable] = &[
         range: [5e-3, 0.12],
         // Under a relay the drive runs at one speed: dry and viscous friction are the same there.
         shown_by: &[Sines, Stairs],
-        family: Family::Friction,
+        families: &[Family::Friction],
         hide: Hide::Drive(|c, rig, _| {
             rig.friction = Friction::dry(c);
             vec![("c", c)]
@@ -25,7 +25,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.02, 0.027, 0.035],
         range: [0.01, 0.06],
         shown_by: &[Sines],
-        family: Family::Friction,
+        families: &[Family::Friction],
         hide: Hide::Drive(|c, rig, random| {
             rig.friction = Friction {
                 coulomb: c,
@@ -47,7 +47,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.04, 0.05, 0.06],
         range: [0.02, 0.1],
         shown_by: &[Sines, Stairs],
-        family: Family::Friction,
+        families: &[Family::Friction],
         hide: Hide::Drive(|c, rig, random| {
             // The bristle yields over milliradians, as in a preloaded bearing.
             let displacement = random.between(2e-3, 5e-3);
@@ -64,7 +64,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [4e-5, 6e-5, 8e-5],
         range: [1e-5, 3e-4],
         shown_by: &[Sines, Stairs],
-        family: Family::Drag,
+        families: &[Family::Drag],
         hide: Hide::Drive(|q, rig, _| {
             rig.quadratic_drag = q;
             vec![("q", q)]
@@ -76,7 +76,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [30.0, 20.0, 10.0],
         range: [5.0, 60.0],
         shown_by: &[Sines],
-        family: Family::Load,
+        families: &[Family::Load],
         hide: Hide::Drive(|stiffness, rig, random| {
             // A load like the motor.
             let load = Load {
@@ -98,7 +98,7 @@ pub(super) const MENU: &[Hideable] = &[
         range: [1e-3, 8e-3],
         // Only where the motor drifts does it cross the gap.
         shown_by: &[Drifting],
-        family: Family::Load,
+        families: &[Family::Load],
         hide: Hide::Drive(|half_gap, rig, random| {
             // A load like the motor, with the contact of hardened teeth.
             let load = Load {
@@ -120,7 +120,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [4e-4, 7.5e-4, 1.1e-3],
         range: [2e-4, 3e-3],
         shown_by: &[Relay, Sines],
-        family: Family::Lateness,
+        families: &[Family::Lateness],
         hide: Hide::Drive(|tau, rig, _| {
             // In whole steps of the bench, so that it is met exactly.
             rig.delay = (tau / 1e-5).round() * 1e-5;
@@ -133,7 +133,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [5e-4, 8.5e-4, 1.2e-3],
         range: [3e-4, 4e-3],
         shown_by: &[Relay, Stairs],
-        family: Family::Lateness,
+        families: &[Family::Lateness],
         hide: Hide::Drive(|time, rig, _| {
             rig.actuator_lag = time;
             vec![("T_a", time)]
@@ -145,7 +145,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [5e-4, 8e-4, 1.1e-3],
         range: [3e-4, 4e-3],
         shown_by: &[Sines],
-        family: Family::Lateness,
+        families: &[Family::Lateness],
         hide: Hide::Drive(|time, rig, _| {
             rig.sensor_lag = time;
             vec![("T_s", time)]
@@ -157,7 +157,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.03, 0.055, 0.08],
         range: [0.01, 0.3],
         shown_by: &[Stairs, Relay],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Drive(|a, rig, _| {
             rig.gain_asymmetry = a;
             vec![("a", a)]
@@ -169,7 +169,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.01, 0.02, 0.03],
         range: [5e-3, 0.06],
         shown_by: &[Stairs, Sines, Relay],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Drive(|torque, rig, _| {
             rig.constant_load = torque;
             vec![("F0", torque)]
@@ -181,7 +181,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.02, 0.035, 0.05],
         range: [0.01, 0.1],
         shown_by: &[Sines, Stairs],
-        family: Family::Ripple,
+        families: &[Family::Ripple],
         hide: Hide::Drive(|amplitude, rig, random| {
             let periods = random.between(3.0, 12.0).round();
             rig.cogging = (amplitude, periods, random.between(-3.0, 3.0));
@@ -194,7 +194,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.4, 0.35, 0.3],
         range: [0.2, 0.6],
         shown_by: &[Sines],
-        family: Family::Amplifier,
+        families: &[Family::Amplifier],
         hide: Hide::Drive(|limit, rig, _| {
             rig.saturation = limit;
             vec![("M", limit)]
@@ -206,7 +206,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.015, 0.022, 0.03],
         range: [8e-3, 0.08],
         shown_by: &[Sines, Stairs],
-        family: Family::Amplifier,
+        families: &[Family::Amplifier],
         hide: Hide::Drive(|width, rig, _| {
             rig.dead_zone = width;
             vec![("z", width)]
@@ -218,7 +218,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.06, 0.08, 0.1],
         range: [0.02, 0.3],
         shown_by: &[Sines],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|torque, rig, _| {
             rig.stranger = Some(Stranger::Gravity { torque });
             vec![("a", torque)]
@@ -230,7 +230,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.04, 0.05, 0.06],
         range: [0.02, 0.2],
         shown_by: &[Stairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|stiffness, rig, _| {
             rig.stranger = Some(Stranger::Spring { stiffness });
             vec![("k", stiffness)]
@@ -242,7 +242,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.15, 0.2, 0.25],
         range: [0.05, 0.4],
         shown_by: &[Sines],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|share, rig, _| {
             rig.stranger = Some(Stranger::LoadFriction { share });
             vec![("m", share)]
@@ -254,7 +254,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [3.0, 5.0, 8.0],
         range: [1.0, 20.0],
         shown_by: &[Sines],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|stiffness, rig, random| {
             let upper = random.between(0.8, 1.2);
             let lower = -random.between(0.8, 1.2);
@@ -273,7 +273,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [2e-3, 2.5e-3, 3e-3],
         range: [1e-3, 6e-3],
         shown_by: &[Sines],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|slope, rig, random| {
             rig.friction = Friction::dry(random.between(0.04, 0.05));
             rig.stranger = Some(Stranger::TightEnd { slope });
@@ -286,7 +286,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.02, 0.035, 0.05],
         range: [0.01, 0.1],
         shown_by: &[Sines, Stairs],
-        family: Family::Ripple,
+        families: &[Family::Ripple],
         hide: Hide::Drive(|torque, rig, random| {
             let periods = random.between(3.0, 8.0).round();
             rig.cogging = (torque, periods, random.between(-3.0, 3.0));
@@ -303,7 +303,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.1, 0.15, 0.2],
         range: [0.05, 0.5],
         shown_by: &[Sines],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|share, rig, random| {
             let periods = random.between(3.0, 8.0).round();
             rig.stranger = Some(Stranger::Ripple {
@@ -320,7 +320,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [3e-3, 4.5e-3, 6e-3],
         range: [2e-3, 0.02],
         shown_by: &[Stairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|share, rig, random| {
             rig.stranger = Some(Stranger::EccentricEncoder {
                 share,
@@ -335,7 +335,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [12.0, 10.0, 8.0],
         range: [5.0, 20.0],
         shown_by: &[Sines],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|rate, rig, _| {
             rig.stranger = Some(Stranger::SlowAmplifier { rate });
             vec![("r", rate)]
@@ -347,7 +347,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.01, 0.015, 0.02],
         range: [5e-3, 0.05],
         shown_by: &[Stairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Drive(|torque, rig, random| {
             let period = random.between(0.13, 0.3);
             rig.stranger = Some(Stranger::Shaking {

@@ -14,7 +14,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [3.0, 5.0, 8.0],
         range: [1.0, 15.0],
         shown_by: &[ProcessRelay, ProcessBinary, ProcessStairs],
-        family: Family::Lateness,
+        families: &[Family::Lateness],
         hide: Hide::Process(|tau, rig, _| {
             // In whole steps of the bench, so that it is met exactly.
             rig.dead_time = (tau / 5e-3).round() * 5e-3;
@@ -27,7 +27,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [4.0, 6.0, 8.0],
         range: [2.0, 15.0],
         shown_by: &[ProcessRelay, ProcessBinary, ProcessStairs],
-        family: Family::Storage,
+        families: &[Family::Storage],
         hide: Hide::Process(|time, rig, _| {
             rig.second_lag = time;
             vec![("T2", time)]
@@ -40,10 +40,25 @@ pub(super) const MENU: &[Hideable] = &[
         range: [1.5, 12.0],
         shown_by: &[ProcessBinary, ProcessStairs],
         // Two lags in a row are the same in either order.
-        family: Family::Storage,
+        families: &[Family::Storage],
         hide: Hide::Process(|time, rig, _| {
             rig.sensor_lag = time;
             vec![("T_s", time)]
+        }),
+    },
+    Hideable {
+        id: EffectId::new("underdamped"),
+        main: "P",
+        strengths: [15.0, 20.0, 30.0],
+        range: [10.0, 40.0],
+        shown_by: &[ProcessBinary, ProcessStairs],
+        families: &[Family::Storage],
+        hide: Hide::Process(|period, rig, random| {
+            // Some tenths of the damping that would stop it.
+            let damping = random.between(0.15, 0.6);
+            rig.swing_period = period;
+            rig.time_constant = damping * period / std::f64::consts::PI;
+            vec![("P", period)]
         }),
     },
     Hideable {
@@ -52,7 +67,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.08, 0.12, 0.16],
         range: [0.03, 0.4],
         shown_by: &[ProcessStairs, ProcessBinary],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Process(|a, rig, _| {
             rig.gain_asymmetry = a;
             vec![("a", a)]
@@ -64,7 +79,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.05, 0.08, 0.12],
         range: [0.02, 0.3],
         shown_by: &[ProcessStairs, ProcessBinary],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Process(|load, rig, _| {
             rig.constant_load = load;
             vec![("F0", load)]
@@ -76,7 +91,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [3e-4, 5e-4, 8e-4],
         range: [1e-4, 1.5e-3],
         shown_by: &[ProcessRelay, ProcessStairs],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Process(|slope, rig, _| {
             rig.load_ramp = slope;
             vec![("r", slope)]
@@ -89,7 +104,7 @@ pub(super) const MENU: &[Hideable] = &[
         range: [0.4, 0.9],
         // The others have one size of input only.
         shown_by: &[ProcessStairs],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Process(|limit, rig, _| {
             rig.saturation = limit;
             vec![("M", limit)]
@@ -101,7 +116,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.04, 0.06, 0.08],
         range: [0.02, 0.12],
         shown_by: &[ProcessStairs],
-        family: Family::Offset,
+        families: &[Family::Offset],
         hide: Hide::Process(|p, rig, _| {
             rig.curvature = p;
             vec![("p", p)]
@@ -113,7 +128,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.3, 0.4, 0.5],
         range: [0.2, 0.8],
         shown_by: &[ProcessStairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Process(|flow, rig, _| {
             rig.stranger = Some(Stranger::Outflow { flow });
             vec![("a", flow)]
@@ -125,7 +140,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.06, 0.08, 0.1],
         range: [0.04, 0.3],
         shown_by: &[ProcessBinary, ProcessStairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Process(|amplitude, rig, random| {
             let period = random.between(30.0, 50.0);
             rig.stranger = Some(Stranger::Swing { amplitude, period });
@@ -138,7 +153,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.06, 0.09, 0.12],
         range: [0.03, 0.25],
         shown_by: &[ProcessStairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Process(|behind, rig, random| {
             let jump = random.between(0.5, 1.5) * behind;
             let band = 2.0 * behind + jump;
@@ -152,7 +167,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.1, 0.15, 0.2],
         range: [0.06, 0.5],
         shown_by: &[ProcessStairs, ProcessBinary],
-        family: Family::Stranger,
+        families: &[Family::Stranger, Family::Storage],
         hide: Hide::Process(|a, rig, _| {
             rig.stranger = Some(Stranger::SlowFall {
                 factor: (1.0 + a) / (1.0 - a),
@@ -166,7 +181,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.2, 0.15, 0.1],
         range: [0.06, 0.3],
         shown_by: &[ProcessStairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Process(|rate, rig, _| {
             rig.stranger = Some(Stranger::SlowValve { rate });
             vec![("r", rate)]
@@ -178,7 +193,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [0.06, 0.09, 0.12],
         range: [0.04, 0.25],
         shown_by: &[ProcessStairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger],
         hide: Hide::Process(|width, rig, _| {
             rig.stranger = Some(Stranger::DeadBand { width });
             vec![("z", width)]
@@ -190,7 +205,7 @@ pub(super) const MENU: &[Hideable] = &[
         strengths: [4.0, 6.0, 8.0],
         range: [2.0, 15.0],
         shown_by: &[ProcessBinary, ProcessStairs],
-        family: Family::Stranger,
+        families: &[Family::Stranger, Family::Storage],
         hide: Hide::Process(|time, rig, random| {
             rig.second_lag = random.between(3.0, 5.0);
             rig.stranger = Some(Stranger::WrongWay { time });
