@@ -127,8 +127,7 @@ fn a_controller_may_be_faster_than_the_record() {
     let d = finish(DiagnosisJob::new(&record).unwrap());
     check(&d, &["coulomb_friction"], &[("c", FRICTION), ("h", 0.4)]);
     assert!(d.verdict.complete, "{}", d.verdict.text);
-    let said =
-        "A logging effect, not the machine: Sampled input, share of the way to the next sample ";
+    let said = "A logging effect, not the machine: Input moving between samples, share of the way to the next ";
     assert!(
         d.verdict.text.to_string().starts_with(said),
         "{}",

@@ -16,7 +16,7 @@ impl Effect for SampledInput {
     }
 
     fn name(&self) -> &'static str {
-        "Sampled input"
+        "Input moving between samples"
     }
 
     fn sentence(&self) -> &'static str {
@@ -39,7 +39,7 @@ impl Effect for SampledInput {
     fn parameters(&self) -> &'static [ParameterSpec] {
         &[ParameterSpec {
             symbol: "h",
-            label: "share of the way to the next sample",
+            label: "share of the way to the next",
             dimension: Dimension::Ratio,
             range: Range::UnitInterval,
         }]

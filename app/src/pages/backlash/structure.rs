@@ -31,7 +31,10 @@ const PLAY: f32 = 0.60;
 const DRIVEN: f32 = 0.765;
 const TO_X2: f32 = 0.895;
 const HALF: f32 = 0.06;
-const NARROW: f32 = 0.024;
+const NARROW: f32 = 0.028;
+
+/// Room that a word in a block leaves on both sides of it, points.
+const MARGIN: f32 = 4.0;
 
 /// The drawing, in shares of its width and points of height about its middle.
 struct Diagram<'a> {
@@ -87,13 +90,19 @@ impl Diagram<'_> {
         rect
     }
 
-    /// A block with its name and its mode; it is lit while it acts.
-    fn block(&self, x: f32, names: [&'static str; 2], color: Color32, lit: bool) {
-        self.frame(x, HALF, faint(color, lit));
+    /// A block with its name and, where that has room, its mode; it is lit while it acts.
+    fn block(&self, x: f32, [name, mode]: [&'static str; 2], color: Color32, lit: bool) {
+        let frame = self.frame(x, HALF, faint(color, lit));
         let text = if lit { Color32::BLACK } else { self.line.color };
-        for (name, y) in names.into_iter().zip([-9.0, 9.0]) {
-            self.say(self.at(x, y), name, text);
+        let mode = self
+            .painter
+            .layout_no_wrap(tr(mode), self.font.clone(), text);
+        if mode.size().x + 2.0 * MARGIN > frame.width() {
+            return self.say(self.at(x, 0.0), name, text);
         }
+        self.say(self.at(x, -9.0), name, text);
+        let corner = self.at(x, 9.0) - 0.5 * mode.size();
+        self.painter.galley(corner, mode, text);
     }
 
     fn integrator(&self, x: f32) {
@@ -163,7 +172,7 @@ pub fn ui(ui: &mut Ui, scene: &Scene, clock: f64) {
         painter: &painter,
         rect,
         line: Stroke::new(1.2, ui.visuals().text_color()),
-        font: FontId::proportional(if rect.width() < 600.0 { 10.0 } else { 13.0 }),
+        font: theme::letters(ui, 13.0),
     };
     diagram.arrow(RELAY + HALF, FORCES - 0.012, "u");
     diagram.arrow(FORCES + 0.012, MOTOR - HALF, "");
