@@ -73,6 +73,19 @@ fn on_a_phone_in_german() {
     );
 }
 
+/// More of some pages than they open with: a name and a link.
+const MORE: [(&str, &str); 3] = [
+    (
+        "backlash-blocks",
+        "v1;backlash;backlash.structure=true;backlash.paused=1",
+    ),
+    (
+        "compare-added",
+        "v1;compare;compare.file=drive-02;compare.effects=%5B%22coulomb_friction%22%5D",
+    ),
+    ("tune-relay", "v1;tune"),
+];
+
 /// For a person to look through; a test of what they show would be a test of every pixel.
 #[test]
 #[ignore = "writes pictures to be looked at: cargo xtask pictures"]
@@ -84,13 +97,20 @@ fn pictures_of_every_page_in_each_look_and_window() {
         for look in ["Dark", "Light", "Projector"] {
             let mut harness = app("start", size);
             wear(&mut harness, look);
-            for page in HysteronApp::default().page_ids() {
-                still(&mut harness, page);
-                let name = format!("{}x{}-{look}-{page}.png", size[0], size[1]);
+            let mut write = |harness: &mut App, name: &str| {
+                let name = format!("{}x{}-{look}-{name}.png", size[0], size[1]);
                 let picture = harness.render().expect("a picture");
                 assert_eq!(picture.width(), size[0] as u32, "{name}");
                 picture.save(folder.join(&name)).expect(&name);
                 written += 1;
+            };
+            for page in HysteronApp::default().page_ids() {
+                still(&mut harness, page);
+                write(&mut harness, page);
+            }
+            for (name, link) in MORE {
+                show(&mut harness, link);
+                write(&mut harness, name);
             }
         }
     }
