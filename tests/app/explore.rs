@@ -1,6 +1,8 @@
 //! Explore beyond the relay of the textbook: relays as they are built, and a drive with a controller.
 
-use crate::support::ui::{App, WIDE, app, click, finish, picture, show, state, texts};
+use crate::support::ui::{
+    App, WIDE, answer, app, click, finish, marks_what_is_of_before, picture, show, state, texts,
+};
 use egui_kittest::kittest::Queryable as _;
 use hysteron_core::on_off;
 use hysteron_core::scenario::AnyScenario;
@@ -270,4 +272,17 @@ fn what_a_page_does_not_show_of_a_scenario_is_said() {
         );
         harness.get_by_label_contains("hysteron simulate");
     }
+}
+
+#[test]
+fn a_loop_with_noise_is_computed_beside_the_frames() {
+    let mut harness = app("explore", WIDE);
+    let noise = "loop.noise=%7B%22std_dev%22:0.05,%22interval%22:0.02,%22seed%22:4%7D";
+    marks_what_is_of_before(&mut harness, &format!("v1;explore;{noise}"));
+    assert!(answer(&harness).starts_with("It oscillates in the noise"));
+    // Without noise it is there at once.
+    let ctx = harness.ctx.clone();
+    assert_eq!(harness.state_mut().open_link(&ctx, "v1;explore"), Ok(()));
+    harness.step();
+    assert!(answer(&harness).starts_with("It oscillates: period"));
 }

@@ -1,7 +1,8 @@
 //! The tuning page, as a user works it: from the relay to the tuned loop.
 
 use crate::support::ui::{
-    App, NARROW, WIDE, answer, app, choose, click, finish, picture, show, state, texts, type_over,
+    App, NARROW, WIDE, answer, app, choose, click, finish, marks_what_is_of_before, picture, show,
+    state, texts, type_over,
 };
 use egui_kittest::kittest::Queryable as _;
 use hysteron::language::Language;
@@ -210,23 +211,7 @@ fn times_up_and_down_that_differ_are_part_of_the_numbers() {
 #[test]
 fn an_answer_of_before_does_not_look_like_one_of_now() {
     let mut harness = page(WIDE);
-    let computing = |h: &App| {
-        let drawn = texts(h);
-        drawn
-            .iter()
-            .any(|t| t == "Computing for what is set now ...")
-    };
-    assert!(!computing(&harness));
-    let ctx = harness.ctx.clone();
-    let other = "v1;tune;loop.relay.hysteresis=0.3";
-    assert_eq!(harness.state_mut().open_link(&ctx, other), Ok(()));
-    harness.step();
-    // The experiment has begun in this frame, so that it cannot be over.
-    let said = answer(&harness);
-    assert!(computing(&harness), "{said}");
-    finish(&mut harness);
-    assert!(!computing(&harness));
-    assert_ne!(answer(&harness), said);
+    marks_what_is_of_before(&mut harness, "v1;tune;loop.relay.hysteresis=0.3");
 }
 
 #[test]

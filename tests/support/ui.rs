@@ -196,6 +196,24 @@ pub fn show(harness: &mut App, link: &str) {
     finish(harness);
 }
 
+/// Opens a link to what is computed beside the frames: the answer of before is marked until the new one is there.
+pub fn marks_what_is_of_before(harness: &mut App, link: &str) {
+    let marked = |harness: &App| {
+        let saying = "Computing for what is set now ...";
+        texts(harness).iter().any(|t| t == saying)
+    };
+    assert!(!marked(harness));
+    let before = answer(harness);
+    let ctx = harness.ctx.clone();
+    assert_eq!(harness.state_mut().open_link(&ctx, link), Ok(()), "{link}");
+    harness.step();
+    // The computation has begun in this frame, so that it cannot be over.
+    assert!(marked(harness), "{link}");
+    finish(harness);
+    assert!(!marked(harness), "{link}");
+    assert_ne!(answer(harness), before, "{link}");
+}
+
 /// Types a text in place of what stands in the field with this label.
 pub fn type_over(harness: &mut App, label: &str, text: &str) {
     harness.get_by_label(label).focus();
