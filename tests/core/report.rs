@@ -7,7 +7,7 @@ use hysteron_core::diagnosis::{
 use hysteron_core::measurement::{Measurement, import_csv};
 use hysteron_core::message::Message;
 use hysteron_core::progress::Progress;
-use hysteron_core::report::{Provenance, ReportInput, Tongue, html, sha256};
+use hysteron_core::report::{Provenance, ReportInput, Tongue, baseline, html, sha256};
 
 fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(format!(
@@ -129,7 +129,7 @@ fn a_report_says_what_the_diagnosis_says() {
     for text in [
         diagnosis.verdict.text.to_string(),
         "u_acting(t) = u(t - tau)".to_owned(),
-        "T dy/dt + y = K (u_acting + F)".to_owned(),
+        baseline(measurement.kind, &last.parameters)[0].to_owned(),
         "hysteron diagnose process-02.csv".to_owned(),
         "4711 bytes".to_owned(),
         sha256(b"abc"),
@@ -142,6 +142,12 @@ fn a_report_says_what_the_diagnosis_says() {
         diagnosis.steps[0].findings[0].text.to_string(),
     ] {
         assert!(page.contains(&text), "'{text}' is missing");
+    }
+    // The equation is of this model: it has every parameter of the baseline.
+    let own = last.parameters.iter().filter(|p| p.effect.is_none());
+    let equation = baseline(measurement.kind, &last.parameters)[0];
+    for name in own.map(|p| p.name.as_str()) {
+        assert!(equation.contains(name), "{name} is not in {equation}");
     }
     // Detail, its residual, the whole residual; one picture an axis at least; the waterfall.
     assert!(page.matches("<figure>").count() >= 5);

@@ -32,10 +32,13 @@ pub(crate) struct BaselineParameter {
 }
 
 /// Place of the ambient in that of a process which comes to rest.
-const AMBIENT: usize = 2;
+const AMBIENT_PLACE: usize = 2;
 
 /// Symbol of the inertia of a drive.
 pub(crate) const INERTIA: &str = "J1";
+
+/// Symbol of the output of a process at rest without input.
+pub(crate) const AMBIENT: &str = "ambient";
 
 /// Symbol of how fast the output of a process that integrates moves.
 pub(crate) const RATE: &str = "K/T";
@@ -72,7 +75,7 @@ const LAG: [BaselineParameter; 3] = [
         effect: None,
     },
     BaselineParameter {
-        symbol: "ambient",
+        symbol: AMBIENT,
         label: "output at rest without input",
         dimension: Some(Dimension::Compound {
             force: 0,
@@ -172,7 +175,7 @@ impl Baseline {
         let (inertia, viscous) = self.body(values);
         let mut model = Model::body(inertia, viscous);
         if matches!(self, Self::Lag { .. }) {
-            model.constant_force = values[AMBIENT] * viscous;
+            model.constant_force = values[AMBIENT_PLACE] * viscous;
         }
         model
     }
@@ -197,7 +200,7 @@ impl Baseline {
             return None;
         };
         let fixed = from_ambient || effects.iter().any(|e| e.id() == LOAD);
-        fixed.then_some((AMBIENT, 0.0))
+        fixed.then_some((AMBIENT_PLACE, 0.0))
     }
 
     /// Whether it says already what an effect says.

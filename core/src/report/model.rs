@@ -6,6 +6,7 @@ use super::html::{Cell, table};
 use super::input::{ReportInput, Tongue};
 use super::math::{display, math};
 use crate::diagnosis::{NextExperiment, Parameter, Step};
+use crate::effect::baseline::{AMBIENT, RATE};
 use crate::effect::{self, EffectId, VISCOUS_FRICTION, name_of};
 use crate::measurement::Kind;
 use crate::message::{Message, fixed};
@@ -13,17 +14,27 @@ use crate::msg;
 use crate::uncertain::{brief, with_error};
 use crate::user_model::Status;
 
-/// Equations of the baseline; `F` is the sum of what the effects add. The second may be empty.
-pub fn baseline(kind: Kind) -> [&'static str; 2] {
+/// Equations of the baseline that has these parameters; `F` is the sum of what the effects add. The second may be
+/// empty.
+pub fn baseline(kind: Kind, parameters: &[Parameter]) -> [&'static str; 2] {
+    let has = |name: &str| {
+        let mut own = parameters.iter().filter(|p| p.effect.is_none());
+        own.any(|p| p.name == name)
+    };
     match kind {
         Kind::Drive => ["J1 dv1/dt = u_acting - d1 v1 + F", "dx1/dt = v1"],
+        Kind::Process if has(RATE) => ["dy/dt = K/T (u_acting + F)", ""],
+        Kind::Process if has(AMBIENT) => ["T dy/dt + y = K (u_acting + F) + ambient", ""],
         Kind::Process => ["T dy/dt + y = K (u_acting + F)", ""],
     }
 }
 
 /// The baseline, and one block for each effect on top of it.
 pub(super) fn equations(input: &ReportInput) -> String {
-    let mut out = display(baseline(input.measurement.kind));
+    let mut out = display(baseline(
+        input.measurement.kind,
+        &input.last.step.parameters,
+    ));
     let tongue = input.tongue;
     let symbols = "the input that reaches the body (u, unless an effect changes it)";
     let _ = writeln!(

@@ -106,7 +106,9 @@ fn equations_ui(
         .iter()
         .filter_map(|id| effect::find(*id));
     let effects = effects.map(Effect::equation);
-    let lines = baseline(kind).into_iter().chain(effects);
+    let lines = baseline(kind, &report.step.parameters)
+        .into_iter()
+        .chain(effects);
     let mut pointed = None;
     for line in lines.filter(|line| !line.is_empty()) {
         pointed = pointed.or(equation_ui(ui, &tr(line), &value));
