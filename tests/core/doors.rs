@@ -254,6 +254,8 @@ fn a_device_says_much_before_its_numbers() {
         "Recorder 7,,,\n,,,\nTime [ms],heater,temperature,-\n",
         "Recorder 7\n\nTime,heater,temperature,-\nms,%,degC,-\n",
         "a;b\nc,d\nTime [ms],heater,temperature,-\n",
+        "[Header]\nDevice=7\n[Data]\nTime [ms],heater,temperature,-\n",
+        "\"Time, of day [ms]\",\"heater, left\",\"temperature, right\",\"-\"\n",
     ] {
         is_the_heater(&accepted(&format!("{head}{table}")), 1.0);
     }
@@ -495,6 +497,18 @@ fn names_keep_their_numbers() {
     );
     let m = read_with_advice(text.as_bytes(), "--map \"t=t, u=heater (1), y=temp (5)\"");
     is_the_heater(&m, 1.0);
+    // So does a word that alone tells columns apart; a unit does not.
+    let row = |k| format!("{k},{},{},{},7", u8::from(on(k)), warmth(k), warmth(k + 3));
+    let text = format!(
+        "t (s),heater,temp (left),temp (right),flow (l/min)\n{}",
+        rows(40, row)
+    );
+    let found = columns("rig.csv", text.as_bytes()).unwrap();
+    let names: Vec<&str> = found.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["t", "heater", "temp (left)", "temp (right)", "flow"]
+    );
     // A plain number is a unit where no other number stands in parentheses.
     let row = |k| format!("{k},{},{}", u8::from(on(k)), warmth(k));
     assert!(

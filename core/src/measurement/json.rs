@@ -14,7 +14,16 @@ use super::text::{Located, decoded};
 pub(super) fn read(bytes: &[u8]) -> Result<Option<Vec<Series>>, Located> {
     let begin = bytes.trim_ascii_start();
     let begin = begin.strip_prefix(b"\xef\xbb\xbf").unwrap_or(begin);
-    if !begin.trim_ascii_start().starts_with(b"{") && !begin.starts_with(b"[") {
+    let is_json = match begin.trim_ascii_start() {
+        [b'{', ..] => true,
+        // A word in brackets is the name of a part of a log.
+        [b'[', inside @ ..] => !inside
+            .trim_ascii_start()
+            .first()
+            .is_some_and(u8::is_ascii_alphabetic),
+        _ => false,
+    };
+    if !is_json {
         return Ok(None);
     }
     let text = decoded(bytes)?.trim_start();

@@ -3,8 +3,15 @@
 /// Stands for any number of blanks and tabs.
 pub(super) const BLANKS: char = ' ';
 
-/// Splits a header; a separator inside brackets belongs to the unit (`[counts, 4096/rev]`).
+/// Splits a header; a separator inside brackets belongs to the unit (`[counts, 4096/rev]`), one inside quotes around a
+/// name to that.
 pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
+    split_names(header, separator)
+        .unwrap_or_else(|| split_names(&header.replace('"', ""), separator).unwrap_or_default())
+}
+
+/// [`split_header`] where quotes come in pairs.
+fn split_names(header: &str, separator: char) -> Option<Vec<String>> {
     let mut fields = vec![String::new()];
     let mut depth = 0;
     let mut quoted = false;
@@ -16,7 +23,10 @@ pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
         match c {
             '[' | '(' => depth += 1,
             ']' | ')' => depth -= 1,
-            '"' => quoted ^= blanks,
+            '"' => {
+                let begins = || fields.last().is_some_and(|f| f.trim().is_empty());
+                quoted = !quoted && (blanks || begins());
+            }
             _ => {}
         }
         let parts = c == separator || (blanks && c.is_whitespace());
@@ -29,14 +39,17 @@ pub(super) fn split_header(header: &str, separator: char) -> Vec<String> {
             last.push(c);
         }
     }
+    if quoted {
+        return None;
+    }
     if blanks {
-        return join_units(fields);
+        return Some(join_units(fields));
     }
     // A separator at the end of the line is a habit of some loggers.
     if fields.len() > 1 && fields.last().is_some_and(|f| f.trim().is_empty()) {
         fields.pop();
     }
-    fields.iter().map(|f| f.trim().to_owned()).collect()
+    Some(fields.iter().map(|f| f.trim().to_owned()).collect())
 }
 
 /// Puts units that stand apart by blanks (`t [s]`) to their names, and leaves out what stands between blanks alone.

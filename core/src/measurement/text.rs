@@ -113,6 +113,9 @@ pub(super) fn open(
         Field::named(name, unit)
     };
     let mut fields: Vec<Field> = names.iter().map(field).collect();
+    if !bare {
+        keep_apart(&mut fields, &names);
+    }
     let below = rows.clone().next().filter(|_| !numeric);
     if let Some(labels) = below.and_then(|(_, row)| labels(row, separator, &fields)) {
         rows.next();
@@ -126,6 +129,20 @@ pub(super) fn open(
         note,
         rows: if numeric { whole } else { rows },
     })
+}
+
+/// Gives columns their whole names where only what stands in brackets, and is no unit, tells them apart: `temp (left)`
+/// and `temp (right)`.
+fn keep_apart(fields: &mut [Field], names: &[String]) {
+    let in_words = |f: &Field| f.unit.as_deref().is_some_and(|unit| !is_unit(unit));
+    let alike = |f: &Field| {
+        let mut same = fields.iter().filter(|other| other.name == f.name);
+        same.clone().count() > 1 && same.all(in_words)
+    };
+    let apart: Vec<bool> = fields.iter().map(alike).collect();
+    for ((field, name), _) in fields.iter_mut().zip(names).zip(apart).filter(|(_, a)| *a) {
+        *field = Field::named(name.trim().to_owned(), None);
+    }
 }
 
 /// The values of rows; what is no number has none.
