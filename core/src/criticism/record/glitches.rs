@@ -102,6 +102,14 @@ fn stands_alone(values: &[f64], row: &[usize], noise: f64) -> bool {
     let off = (values[first] - values[first - 1])
         .abs()
         .min((values[last] - values[last + 1]).abs());
+    // What goes on as it came, or comes as it goes on, is the peak of a motion.
+    let side = (values[first] - values[first - 1]).signum();
+    let beyond = |value: usize, [near, far]: [usize; 2]| {
+        side * (values[value] - 2.0 * values[near] + values[far]) > FAR_OFF * noise
+    };
+    if !beyond(first, [first - 1, first - 2]) || !beyond(last, [last + 1, last + 2]) {
+        return false;
+    }
     let even = (AGREE * SECOND_DIFFERENCE * noise).min(SHARE * off);
     let bend = |i: usize| (values[i - 1] - 2.0 * values[i] + values[i + 1]).abs();
     bend(first - 2) < even && bend(last + 2) < even
@@ -114,8 +122,11 @@ fn expected(values: &[f64], i: usize, noise: f64) -> Option<f64> {
         terms.map(|(w, k)| w * values[k]).sum()
     };
     let said = sum(AT_VALUE, [i - 2, i - 1, i + 1, i + 2]);
-    let off = (values[i] - said).abs();
-    if off < FAR_OFF * CUBIC * noise {
+    let (off, side) = ((values[i] - said).abs(), (values[i] - said).signum());
+    // A kink is off the cubic through both of its sides, and lies on the line of either.
+    let beside = |near: usize, far: usize| side * (values[i] - 2.0 * values[near] + values[far]);
+    let least = beside(i - 1, i - 2).min(beside(i + 1, i + 2));
+    if off < FAR_OFF * CUBIC * noise || least < 0.5 * off {
         return None;
     }
     let agree = (AGREE * CUBIC * noise).min(SHARE * off);
@@ -160,6 +171,19 @@ mod tests {
         for (k, motion) in motions.iter().enumerate() {
             let found = mend(&mut noisy(motion), 1.0);
             assert_eq!(found, Glitches::default(), "motion {k}");
+        }
+    }
+
+    #[test]
+    fn the_highest_peak_of_a_thermostat_is_none() {
+        // Up by 28 a sample, down by 8, from a sample or from within two.
+        for within in [0.0, 0.37] {
+            let peak = |i: f64| {
+                let (cycle, since) = ((i / 45.0).floor(), i % 45.0);
+                let top = 10.0 + (cycle * within) % 1.0;
+                28.0 * since.min(top) - 8.0 * (since - top).max(0.0)
+            };
+            assert_eq!(mend(&mut noisy(peak), 1.0), Glitches::default(), "{within}");
         }
     }
 

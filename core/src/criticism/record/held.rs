@@ -5,7 +5,9 @@
 //! the same number of samples while the signal goes on by now more and now fewer counts.
 
 use super::lattice::resolution;
-use super::tuning::{BINARY, COUNTED, IN_STEP, LEAST_READINGS, SIZES_OF_COUNTS, USUAL};
+use super::tuning::{
+    BINARY, COUNTED, IN_STEP, LEAST_READINGS, LONGER, REPEATED, SIZES_OF_COUNTS, USUAL,
+};
 
 /// The samples with fresh readings, of a channel that holds them.
 pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
@@ -19,13 +21,18 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     let count = stays.len();
     let median = *stays.select_nth_unstable(count / 2).1;
     if median < 2 {
-        return None;
+        return (is_fine(&begins, values) && repeats_by_chance(&stays)).then(|| {
+            begins.insert(0, 0);
+            begins
+        });
     }
     let every = in_step(&stays, median);
     stays.retain(|stay| *stay > 1 && stay.abs_diff(median) <= 1);
     let usual = stays.len() as f64 >= USUAL * count as f64;
     let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
-    if usual && goes_by_counts(&readings) {
+    // A counter that creeps goes on by one count at a time.
+    let creeps = every.is_none() || !skips_counts(&readings);
+    if usual && creeps && goes_by_counts(&readings) {
         return None;
     }
     // One that stays longer came again as it was.
@@ -51,6 +58,25 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     Some(fresh)
 }
 
+/// Whether hardly any reading comes again: what repeats is the same reading, and not another one of the same size.
+fn is_fine(begins: &[usize], values: &[f64]) -> bool {
+    let mut readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
+    readings.sort_by(f64::total_cmp);
+    let count = readings.len() as f64;
+    readings.dedup();
+    readings.len() as f64 > IN_STEP * count
+}
+
+/// Whether readings stay for a sample more now and then, as often and as long as chance has it: a logger missed the
+/// next one. What is at rest stays longer.
+fn repeats_by_chance(stays: &[usize]) -> bool {
+    let all: usize = stays.iter().sum();
+    let share = 1.0 - stays.len() as f64 / all as f64;
+    let longest = stays.iter().copied().max().unwrap_or(0) as f64;
+    let usual = 1.0 - libm::log(stays.len() as f64) / libm::log(share);
+    share > REPEATED && longest < LONGER * usual
+}
+
 /// For how many samples each reading is held, where nearly all stay for a multiple of that: the longest such time, up
 /// to `most`.
 fn in_step(stays: &[usize], most: usize) -> Option<usize> {
@@ -61,10 +87,23 @@ fn in_step(stays: &[usize], most: usize) -> Option<usize> {
     (2..=most).rev().find(|every| share(*every) >= IN_STEP)
 }
 
-/// Whether most moves from one reading to the next are of a few sizes only.
-fn goes_by_counts(readings: &[f64]) -> bool {
+/// The sizes of the moves from one reading to the next, the least first.
+fn moves_of(readings: &[f64]) -> Vec<f64> {
     let mut moves: Vec<f64> = readings.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
     moves.sort_by(f64::total_cmp);
+    moves
+}
+
+/// Whether some moves from one reading to the next are of more than one count.
+fn skips_counts(readings: &[f64]) -> bool {
+    let moves = moves_of(readings);
+    let of_one = moves.partition_point(|m| *m < 1.5 * moves[0]);
+    (moves.len() - of_one) as f64 > (1.0 - IN_STEP) * moves.len() as f64
+}
+
+/// Whether most moves from one reading to the next are of a few sizes only.
+fn goes_by_counts(readings: &[f64]) -> bool {
+    let moves = moves_of(readings);
     let most = readings.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let same = (0.5 * resolution(readings)).max(BINARY * most);
     let sizes = moves.chunk_by(|a, b| b - a < same);
@@ -151,6 +190,45 @@ mod tests {
         assert_eq!(fresh(&values).map(|f| f.len()), Some(200));
         let level = noise_level(&values, &[1.0; 400]);
         assert!((level / 0.21 - 1.0).abs() < 0.25, "{level}");
+    }
+
+    #[test]
+    fn a_coarse_sensor_that_a_faster_log_holds_in_step_does_so_though_it_goes_by_counts() {
+        let mut random = Random::new(8);
+        let reading = |i: usize| 45.0 + 3.0 * libm::sin(0.02 * i as f64);
+        for hold in [2, 5] {
+            let values: Vec<f64> = (0..300)
+                .map(|i| reading(i) + 0.05 * random.normal())
+                .map(|v| (10.0 * v).round() / 10.0)
+                .flat_map(|v| vec![v; hold])
+                .collect();
+            assert_eq!(fresh(&values).map(|f| f.len()), Some(300), "{hold}");
+        }
+    }
+
+    #[test]
+    fn readings_that_a_logger_missed_are_not_fresh() {
+        for share in [0.05, 0.3, 0.5] {
+            let mut random = Random::new(9);
+            let mut stale = 0;
+            let mut values = vec![0.0];
+            for i in 1..3000 {
+                let next = libm::sin(0.01 * f64::from(i)) + 0.01 * random.normal();
+                let missed = random.uniform() < share;
+                stale += usize::from(missed);
+                values.push(if missed {
+                    values[values.len() - 1]
+                } else {
+                    next
+                });
+            }
+            assert_eq!(fresh(&values).map(|f| f.len()), Some(3000 - stale));
+        }
+        // A body that rests now and then repeats as well.
+        let resting: Vec<f64> = (0..3000)
+            .map(|i| (libm::sin(0.01 * f64::from(i)) - 0.5).max(0.0))
+            .collect();
+        assert_eq!(fresh(&resting), None);
     }
 
     #[test]

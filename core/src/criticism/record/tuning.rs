@@ -40,6 +40,9 @@ pub(super) const USUAL: f64 = 0.8;
 /// so many: a slow counter's stay for odd numbers as often as for even ones.
 pub(super) const IN_STEP: f64 = 0.97;
 
+/// How many times longer than chance has it a reading may stay that a logger repeats where it missed the next.
+pub(super) const LONGER: f64 = 3.0;
+
 /// A counter that creeps goes on by one count or two, each printed in two ways at most: share of the moves that so many
 /// sizes must not reach.
 pub(super) const SIZES_OF_COUNTS: usize = 4;
