@@ -491,7 +491,9 @@ impl Session {
     /// its usual speed: such a model explains a motion by where its windows begin, and nothing by the input.
     fn is_too_heavy(&self, fit: &Fit) -> bool {
         let (scales, body) = (&self.scales, fit.values[0]);
-        self.kind() == Kind::Drive && body * scales.speed > scales.force * scales.duration
+        let input = &self.whole().input;
+        let mean = input.iter().map(|u| u.abs()).sum::<f64>() / input.len() as f64;
+        self.kind() == Kind::Drive && body * scales.speed > mean * scales.duration
     }
 
     /// Whether small random forces leave what a fit of the whole record leaves.

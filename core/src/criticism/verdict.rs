@@ -433,7 +433,7 @@ pub(super) fn add_input_check(verdict: &mut Verdict, check: &InputCheck, paramet
     if !leads || verdict.complete && !closed {
         return;
     }
-    if check.verdict == InputVerdict::Sign || closed && !check.plant_told {
+    if check.is_of_another_plant() {
         verdict.missing.clear();
         verdict.experiments.clear();
         verdict.next_experiment = None;

@@ -36,6 +36,15 @@ pub struct InputCheck {
     pub plant_told: bool,
 }
 
+impl InputCheck {
+    /// Whether the record is not of what the input does to this plant: its sign is turned, or it shows the controller
+    /// alone. No physics is named there.
+    pub fn is_of_another_plant(&self) -> bool {
+        let closed = self.verdict == InputVerdict::ClosedLoop;
+        self.verdict == InputVerdict::Sign || closed && !self.plant_told
+    }
+}
+
 /// Effects that together explain the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Subset {

@@ -6,7 +6,6 @@ use super::tuning::{ALIKE, MOST_HIDDEN_MISSES, MOST_LEADS, MOST_MISSES, MOST_SIZ
 use super::{Explain, Level, Stage};
 use crate::criticism::screen::{Screened, Start};
 use crate::criticism::session::Session;
-use crate::diagnosis::InputVerdict;
 
 impl Explain {
     /// Tasks of the subsets of a level.
@@ -15,10 +14,7 @@ impl Explain {
         self.stage = Stage::Fit(level);
         self.looked_at.clear();
         // Where the input is not what acted, an effect would be one of another machine.
-        let other = matches!(
-            session.input_check.verdict,
-            InputVerdict::Sign | InputVerdict::ClosedLoop
-        );
+        let other = session.input_check.is_of_another_plant();
         // A hidden body is free: what acts on the measured one, with an effect more, may do as well with fewer values.
         let doubted =
             !hidden && self.has_hidden_body(self.best) && size == self.size(self.best) + 1;

@@ -9,7 +9,6 @@ use super::{Explain, Stage};
 use crate::criticism::fit::Fit;
 use crate::criticism::screen::Screened;
 use crate::criticism::session::Session;
-use crate::diagnosis::InputVerdict;
 use crate::effect::{Dimension, ParameterSpec, is_seldom};
 
 /// A fit with what few machines have in the place of a part of that, from these places on: what both have keeps its
@@ -42,10 +41,7 @@ fn grown(session: &Session, fit: &Fit, from: usize) -> Vec<Sketch> {
 impl Explain {
     /// Has what few machines have raced, alone and beside the best, unless there is nothing to be explained.
     pub(super) fn open_seldom(&mut self, session: &mut Session, screened: &Screened) {
-        let other = matches!(
-            session.input_check.verdict,
-            InputVerdict::Sign | InputVerdict::ClosedLoop
-        );
+        let other = session.input_check.is_of_another_plant();
         let explained = self.is_noise(session, self.best);
         if other || explained && self.size(self.best) < 2 || self.knows_wrongly(session) {
             self.open_swaps(session);

@@ -12,7 +12,7 @@ use crate::criticism::noise::{WANDER, news_left};
 use crate::criticism::screen::Screened;
 use crate::criticism::select::{CHANCE, outweighs};
 use crate::criticism::session::Session;
-use crate::effect::{Effect, EffectId, ParameterSpec};
+use crate::effect::{Effect, EffectId, ParameterSpec, is_seldom};
 use crate::measurement::Kind;
 
 /// Whether the values of two effects have the same dimensions.
@@ -141,7 +141,8 @@ impl Explain {
         self.tasks.extend(same.into_iter().map(Task::Fit));
     }
 
-    /// Trials that differ from the best in one effect that was added, with the place of that; no richer ones.
+    /// Trials that differ from the best in one effect that was added, with the place of that; no richer ones, and of
+    /// what few machines have those that leave little only.
     fn swapped(&self, session: &Session) -> Vec<Rival> {
         let best = &self.trials[self.best];
         let own = best.ids();
@@ -160,7 +161,9 @@ impl Explain {
             let ([place], [effect]) = (gone.as_slice(), new.as_slice()) else {
                 continue;
             };
-            let fair = places.contains(place) && may_replace(*effect, best.effects()[*place]);
+            let fair = places.contains(place)
+                && may_replace(*effect, best.effects()[*place])
+                && (!is_seldom(effect.id()) || self.leaves_little(session, index));
             if ids.len() == own.len() && fair && trial.values() <= values {
                 let rival = Rival {
                     place: *place,
