@@ -387,3 +387,29 @@ fn processes_of_the_second_rig_are_right() {
         }
     }
 }
+
+/// A drive that starts from rest under one and the same input, which is all that such a record needs to have.
+#[test]
+fn an_input_that_never_changes_moves_a_clean_drive() {
+    let (inertia, viscous, torque) = (1e-3, 2e-3, 0.2);
+    let mut random = Random::new(21);
+    let mut csv = "t [s],u [N m],v1 [rad/s]\n".to_owned();
+    for i in 0..1000 {
+        let t = 2e-3 * f64::from(i);
+        let speed = torque / viscous * (1.0 - (-viscous * t / inertia).exp());
+        let _ = writeln!(csv, "{t},{torque},{}", speed + 0.01 * random.normal());
+    }
+    let d = diagnose(&import_csv("start.csv", csv.as_bytes(), None).unwrap());
+    assert!(
+        d.verdict.complete && d.verdict.missing.is_empty(),
+        "{}",
+        d.verdict.text
+    );
+    for (name, value) in [("J1", inertia), ("d1", viscous)] {
+        let (found, error) = parameter(&d, name);
+        assert!(
+            (found - value).abs() < 4.0 * error,
+            "{name} {found} +- {error}"
+        );
+    }
+}

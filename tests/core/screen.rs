@@ -7,6 +7,7 @@ use hysteron_core::rig::process::{Excitation as ProcessExcitation, ProcessRig};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Stranger};
 
 use crate::support::controlled::{process, under_controller};
+use crate::support::diagnosis::classes;
 use crate::support::score::diagnose;
 use crate::support::servo::servo;
 use crate::support::shared::shared;
@@ -344,6 +345,22 @@ fn a_controller_with_limits_is_read_off_with_its_set_point() {
             .contains("u = -0.400 y - 0.00500 ∫(y - "),
         "{}",
         check.text
+    );
+}
+
+/// Where the set point tells the plant, so does the loop what the plant has beside its lag.
+#[test]
+fn what_is_missing_is_looked_for_in_a_closed_loop_too() {
+    let diagnosis = diagnose(&under_controller()).expect("a diagnosis");
+    let check = diagnosis.input_check.as_ref().expect("a check");
+    assert_eq!(check.verdict, InputVerdict::ClosedLoop);
+    assert!(check.plant_told, "{}", check.text);
+    let found = classes(&diagnosis);
+    assert_eq!(
+        found,
+        [["second_lag", "sensor_lag"]],
+        "{}",
+        diagnosis.verdict.text
     );
 }
 
