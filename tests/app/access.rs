@@ -23,7 +23,7 @@ const PLAIN: [&str; 24] = [
     "set point of the test",
     "gain k",
     "hysteresis ε",
-    "asymmetry a",
+    "asymmetry α",
     "full power",
     "reference r",
     "dead zone d",

@@ -1,12 +1,18 @@
 //! What a plot gives away: its picture and its numbers. Its menu notes the wish; the next frame, in which no
 //! menu covers the plot, fulfils it.
 
-use egui::{Context, Id, Pos2, Rect, UiBuilder, vec2};
+use egui::{Context, Id, Pos2, Rect, UiBuilder, Vec2, vec2};
 use hysteron_core::message::Message;
 use hysteron_core::msg;
 
 use crate::export::Table;
 use crate::language::tr;
+
+/// Size of the ground of its dots and how far that is below the middle of the button, points; and how much of what lies
+/// beneath it shows no more.
+const DOTS: Vec2 = vec2(22.0, 12.0);
+const DOTS_BELOW: Vec2 = vec2(0.0, 4.0);
+const GROUND: f32 = 0.8;
 
 /// Least side of the button of a menu, points.
 const BUTTON: f32 = 24.0;
@@ -104,6 +110,10 @@ pub fn ui(
     });
     let side = ui.spacing().interact_size.y.max(BUTTON);
     let corner = Rect::from_min_max(inner.max - vec2(side, side), inner.max);
+    // On a ground of its own: three dots on a curve would be read as data.
+    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
+    let dots = Rect::from_center_size(corner.center() + DOTS_BELOW, DOTS);
+    ui.painter().rect_filled(dots, 4.0, ground);
     let mut child = ui.new_child(UiBuilder::new().id_salt(plot).max_rect(corner));
     child.spacing_mut().button_padding = vec2(2.0, 0.0);
     child.spacing_mut().item_spacing = vec2(0.0, 0.0);

@@ -51,7 +51,8 @@ impl<'p, 'd> Pen<'p, 'd> {
 
     pub fn line(&mut self, line: Line<'d>) {
         self.note(&line, true);
-        self.plot.line(line);
+        // A band, as which `egui_plot` draws points that lie close to each other, has no width where it is steep.
+        self.plot.line(line.allow_band(false));
     }
 
     pub fn points(&mut self, points: Points<'d>) {

@@ -37,7 +37,7 @@ pub fn slider(
 
 /// The slider of how much stronger a relay pushes up than down.
 pub fn asymmetry_slider(ui: &mut egui::Ui, value: &mut f64, normal: f64) {
-    slider(ui, value, normal, 1.0, -0.6..=0.6, "asymmetry a")
+    slider(ui, value, normal, 1.0, -0.6..=0.6, "asymmetry α")
         .on_hover_text(tr("How much stronger it pushes up than down"));
 }
 

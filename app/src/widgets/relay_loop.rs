@@ -104,8 +104,7 @@ pub fn time_ui(ui: &mut egui::Ui, relay: &Relay, data: &ExploreData, clock: f64,
         plot.line(
             Line::new(tr("input u"), curve(&data.input))
                 .color(theme::INPUT)
-                .width(1.2)
-                .allow_band(false),
+                .width(1.2),
         );
         let output: PlotPoints<'_> = data
             .time

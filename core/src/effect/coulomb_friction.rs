@@ -37,7 +37,7 @@ impl Effect for CoulombFriction {
     }
 
     fn equation(&self) -> &'static str {
-        "F = -c sgn(v) while moving; at rest F balances the input as long as |input| <= c"
+        "F = -c sgn(v) while moving; after a reversal it builds up over s, damped by z; at rest it balances the input up to c"
     }
 
     fn source(&self) -> &'static str {

@@ -13,7 +13,7 @@ pub(super) const LEVEL: ParameterSpec = ParameterSpec {
 /// Displacement over which friction builds up after a reversal, too short to be seen sample by sample.
 pub(super) const SHORT: ParameterSpec = ParameterSpec {
     symbol: "s",
-    label: "displacement over which it builds up",
+    label: "build-up displacement",
     dimension: Dimension::Position,
     range: Range::Short,
 };

@@ -22,14 +22,14 @@ pub fn presets() -> Vec<Preset> {
     vec![
         preset(
             "Third-order lag",
-            "Three equal storages in a row.",
+            "Three equal first-order lags in series.",
             &[1.0],
             &[1.0, 3.0, 3.0, 1.0],
             0.0,
         ),
         preset(
             "Fourth-order lag",
-            "Four equal storages in a row.",
+            "Four equal first-order lags in series.",
             &[1.0],
             &[1.0, 4.0, 6.0, 4.0, 1.0],
             0.0,

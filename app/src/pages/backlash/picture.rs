@@ -110,7 +110,8 @@ impl View {
         let step = round_step(80.0 / self.scale);
         let first = ((self.middle - 0.5 * width / self.scale) / step).ceil();
         let color = ui.visuals().text_color();
-        let y = self.rect.bottom() - 18.0;
+        let font = theme::letters(ui, 11.0);
+        let y = self.rect.bottom() - 1.3 * font.size - 5.0;
         let decimals = (-step.log10().floor()).max(0.0) as usize;
         let mut named = false;
         for k in 0..40 {
@@ -123,7 +124,7 @@ impl View {
             let unit = if named { "" } else { " mrad" };
             let label = painter.layout_no_wrap(
                 tr_number(format!("{x:.decimals$}")) + unit,
-                theme::letters(ui, 11.0),
+                font.clone(),
                 color,
             );
             let half = 0.5 * label.size().x;

@@ -193,7 +193,7 @@ pub fn map_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         ui.label(tr("The load was not measured: there is no map."));
         return;
     }
-    let mut curves = vec![("x2 against x1", LOAD, Shape::Line)];
+    let mut curves = vec![("x2 against x1", LOAD, Shape::Circle)];
     if scene.input().is_some() {
         curves.push(("ends of the gap", CONTACT, Shape::Dashes));
     }

@@ -33,6 +33,9 @@ const TO_X2: f32 = 0.895;
 const HALF: f32 = 0.06;
 const NARROW: f32 = 0.028;
 
+/// Length of the head of an arrow, points.
+const HEAD: f32 = 7.0;
+
 /// Room that a word in a block leaves on both sides of it, points.
 const MARGIN: f32 = 4.0;
 
@@ -52,9 +55,19 @@ impl Diagram<'_> {
         )
     }
 
+    /// An arrow whose head is as large as all others.
+    fn point(&self, from: Pos2, to: Pos2) {
+        let along = HEAD * (to - from).normalized();
+        self.painter.line_segment([from, to], self.line);
+        for side in [0.5, -0.5] {
+            let barb = to - along + side * along.rot90();
+            self.painter.line_segment([to, barb], self.line);
+        }
+    }
+
     fn arrow(&self, from: f32, to: f32, name: &'static str) {
         let (a, b) = (self.at(from, 0.0), self.at(to, 0.0));
-        self.painter.arrow(a, b - a, self.line);
+        self.point(a, b);
         if name.is_empty() {
             return;
         }
@@ -70,8 +83,7 @@ impl Diagram<'_> {
             self.at(to, end),
         ];
         self.painter.line(corners[..3].to_vec(), self.line);
-        self.painter
-            .arrow(corners[2], corners[3] - corners[2], self.line);
+        self.point(corners[2], corners[3]);
         let middle = corners[1] + 0.5 * (corners[2] - corners[1]);
         self.say(middle + vec2(0.0, -8.0), name, self.line.color);
     }
@@ -115,7 +127,7 @@ impl Diagram<'_> {
         let middle = self.at(x, 0.0);
         self.painter.circle_stroke(middle, 7.0, self.line);
         let y = if below { 14.0 } else { -14.0 };
-        self.say(middle + vec2(-9.0, y), "−", self.line.color);
+        self.say(middle + vec2(10.0, y), "−", self.line.color);
     }
 
     /// The play: no force in the gap, and where the masses are now.

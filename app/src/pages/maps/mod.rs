@@ -157,12 +157,20 @@ impl Maps {
             &self.input,
             &self.map,
             self.quantity,
-            self.point,
+            self.shown_point(),
             height,
         );
         if let Some(point) = chosen {
             self.choose(point, commands);
         }
+    }
+
+    /// The point that is read out: the one that was chosen, or the loop in *Explore*.
+    fn shown_point(&self) -> [f64; 2] {
+        let own = |axis: Axis| axis.parameter.read(&self.input.base);
+        self.point.unwrap_or_else(|| {
+            [self.input.x, self.input.y].map(|axis| own(axis).clamp(axis.from, axis.to))
+        })
     }
 
     /// Reads a point out and sets it in *Explore*.

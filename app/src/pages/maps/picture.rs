@@ -1,7 +1,7 @@
 //! The map as one textured image, with axes, colour bar, legend and reading.
 
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
-use egui_plot::{MarkerShape, PlotImage, PlotPoint, Points};
+use egui_plot::{MarkerShape, PlotImage, PlotPoint, PlotUi, Points};
 use hysteron_core::maps::{Map, MapInput, Outcome, Quantity};
 use hysteron_core::msg;
 
@@ -42,7 +42,7 @@ impl Picture {
         input: &MapInput,
         map: &Map,
         quantity: Quantity,
-        point: Option<[f64; 2]>,
+        point: [f64; 2],
         height: f32,
     ) -> Option<[f64; 2]> {
         if map.size() == 0 {
@@ -65,7 +65,7 @@ impl Picture {
         ui: &mut egui::Ui,
         input: &MapInput,
         map: &Map,
-        point: Option<[f64; 2]>,
+        point: [f64; 2],
         height: f32,
     ) -> Option<[f64; 2]> {
         let (x, y) = (input.x, input.y);
@@ -92,15 +92,13 @@ impl Picture {
                     let size = [(x.to - x.from) as f32, (y.to - y.from) as f32];
                     plot.image(PlotImage::new("map", texture.id(), centre, size));
                 }
-                if let Some(point) = point {
-                    for (radius, color) in [(8.0, Color32::BLACK), (6.0, Color32::WHITE)] {
-                        plot.points(
-                            Points::new(tr("set in Explore"), vec![point])
-                                .shape(MarkerShape::Cross)
-                                .radius(radius)
-                                .color(color),
-                        );
-                    }
+                for (radius, color) in [(8.0, Color32::BLACK), (6.0, Color32::WHITE)] {
+                    let mark = Points::new(tr("set in Explore"), vec![point])
+                        .shape(MarkerShape::Cross)
+                        .radius(radius)
+                        .color(color);
+                    // The numbers of the plot are the map's.
+                    PlotUi::points(plot, mark);
                 }
                 plot.pointed()
             });

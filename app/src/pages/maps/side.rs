@@ -46,13 +46,7 @@ impl Maps {
     pub(super) fn point_ui(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         ui.strong(tr("At one point"));
         let (x, y) = (self.input.x, self.input.y);
-        let old = self.point.unwrap_or_else(|| {
-            [x, y].map(|axis| {
-                axis.parameter
-                    .read(&self.input.base)
-                    .clamp(axis.from, axis.to)
-            })
-        });
+        let old = self.shown_point();
         let mut point = old;
         for (value, axis) in point.iter_mut().zip([x, y]) {
             let unit = axis.parameter.unit();

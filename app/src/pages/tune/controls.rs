@@ -45,7 +45,7 @@ impl Tune {
             TuningInput::default().relay.asymmetry,
             1.0,
             -0.6..=0.6,
-            "asymmetry a",
+            "asymmetry α",
         )
         .on_hover_text(tr(
             "For the relay in step 4 only: without it a test says nothing about the static gain",

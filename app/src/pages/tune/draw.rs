@@ -83,8 +83,7 @@ pub fn run_ui(ui: &mut egui::Ui, id: &str, test: &RelayTest, height: f32) {
         plot.line(
             Line::new(tr("input u"), staircase(&test.run.input, end))
                 .color(theme::INPUT)
-                .width(1.2)
-                .allow_band(false),
+                .width(1.2),
         );
         for eps in [test.relay.hysteresis, -test.relay.hysteresis] {
             plot.line(

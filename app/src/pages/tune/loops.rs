@@ -5,6 +5,7 @@ use hysteron_core::counted;
 use hysteron_core::message::{Message, fixed};
 use hysteron_core::msg;
 use hysteron_core::tuning::{LoopReport, Response, TuningReport};
+use hysteron_core::uncertain::significant;
 
 use super::draw::{
     AFTER, BEFORE, CAPTION, beside, controller, curve, maybe, number, plot, series, table,
@@ -26,8 +27,9 @@ pub const STAGE: Stage = Stage {
 };
 
 fn answer(seen: Seen<'_>) -> Message {
-    let before = &seen.report.before;
-    let after = match &seen.report.after {
+    let report = seen.report;
+    let before = &report.before;
+    let after = match &report.after {
         Ok(after) => after,
         Err(error) => return msg!("There is no tuned loop: {}.", error),
     };
@@ -38,7 +40,8 @@ fn answer(seen: Seen<'_>) -> Message {
             fixed(m.max_sensitivity, 2)
         ),
         (Some(old), Some(new)) => msg!(
-            "A load step now leaves an error of {} s instead of {} s; Ms is {} instead of {}.",
+            "In the {} s after a load step the error now adds up to {} s instead of {} s; Ms is {} instead of {}.",
+            significant(report.horizon, 2),
             number(after.load.iae),
             number(before.load.iae),
             fixed(new.max_sensitivity, 2),
@@ -147,15 +150,13 @@ fn response_ui(
                 Line::new(tr("before"), sparse(&points))
                     .color(BEFORE)
                     .width(2.0)
-                    .style(LineStyle::dashed_loose())
-                    .allow_band(false),
+                    .style(LineStyle::dashed_loose()),
             );
             if let Some(response) = after.map(part) {
                 plot.line(
                     Line::new(tr("after"), series(&response.time, &response.output))
                         .color(AFTER)
-                        .width(2.5)
-                        .allow_band(false),
+                        .width(2.5),
                 );
             }
         });
@@ -195,22 +196,19 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
             Line::new(tr("unit circle"), curve(&circle))
                 .color(theme::NOISE.gamma_multiply(0.6))
                 .width(1.0)
-                .style(LineStyle::dashed_dense())
-                .allow_band(false),
+                .style(LineStyle::dashed_dense()),
         );
         plot.line(
             Line::new(tr("before"), curve(&before.nyquist))
                 .color(BEFORE)
                 .width(2.0)
-                .style(LineStyle::dashed_loose())
-                .allow_band(false),
+                .style(LineStyle::dashed_loose()),
         );
         if let Some(after) = after {
             plot.line(
                 Line::new(tr("after"), curve(&after.nyquist))
                     .color(AFTER)
-                    .width(2.5)
-                    .allow_band(false),
+                    .width(2.5),
             );
         }
         plot.points(
@@ -240,16 +238,16 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
         });
         row("gain margin", &|l| {
             l.margins
-                .map_or_else(dash, |m| maybe(m.gain_margin, "without limit"))
+                .map_or_else(dash, |m| maybe(m.gain_margin, "infinite"))
         });
         row("phase margin [°]", &|l| {
             l.margins.map_or_else(dash, |m| {
-                maybe(m.phase_margin.map(f64::to_degrees), "without limit")
+                maybe(m.phase_margin.map(f64::to_degrees), "infinite")
             })
         });
         row("delay margin [s]", &|l| {
             l.margins
-                .map_or_else(dash, |m| maybe(m.delay_margin, "without limit"))
+                .map_or_else(dash, |m| maybe(m.delay_margin, "infinite"))
         });
         row("sensitivity Ms", &|l| {
             l.margins

@@ -202,7 +202,7 @@ impl Tune {
                 let name = if measured {
                     "Test and gains"
                 } else {
-                    "Plant, relay and wishes"
+                    "Plant, relay and specifications"
                 };
                 if pinned && !measured {
                     self.steps_ui(ui, desk);

@@ -85,16 +85,14 @@ fn nyquist_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
         plot.line(
             Line::new(tr("plant P(jω)"), curve(&report.nyquist))
                 .color(theme::MEASURED)
-                .width(2.0)
-                .allow_band(false),
+                .width(2.0),
         );
         let line = curve(&[[-20.0, found[1]], [0.0, found[1]]]);
         plot.line(
             Line::new(tr("relay -1/N(a)"), line)
                 .color(theme::DESCRIBING)
                 .width(2.5)
-                .style(LineStyle::dashed_loose())
-                .allow_band(false),
+                .style(LineStyle::dashed_loose()),
         );
         let mut mark = |name: &'static str, at: [f64; 2], color, shape| {
             plot.points(

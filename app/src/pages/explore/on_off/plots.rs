@@ -68,8 +68,7 @@ pub fn time_ui(ui: &mut egui::Ui, input: &OnOffInput, data: &OnOffData, height: 
         plot.line(
             Line::new(tr("input u"), curve(&data.input))
                 .color(theme::INPUT)
-                .width(1.5)
-                .allow_band(false),
+                .width(1.5),
         );
     });
 }

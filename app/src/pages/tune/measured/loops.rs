@@ -69,15 +69,13 @@ fn response_ui(
                 Line::new(tr("without"), series(&with.time, without))
                     .color(BEFORE)
                     .width(2.0)
-                    .style(LineStyle::dashed_loose())
-                    .allow_band(false),
+                    .style(LineStyle::dashed_loose()),
             );
         }
         plot.line(
             Line::new(tr("with the controller"), series(&with.time, &with.output))
                 .color(AFTER)
-                .width(2.5)
-                .allow_band(false),
+                .width(2.5),
         );
     });
 }

@@ -64,16 +64,14 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
                 plot.line(
                     Line::new(tr("preferred model"), curve(&report.nyquist))
                         .color(theme::MODEL)
-                        .width(2.0)
-                        .allow_band(false),
+                        .width(2.0),
                 );
             }
             if let Some(point) = &tuning.point {
                 plot.line(
                     Line::new(tr("2 standard errors"), curve(&region(point)))
                         .color(theme::MEASURED)
-                        .width(1.5)
-                        .allow_band(false),
+                        .width(1.5),
                 );
                 let value = point.value();
                 let [ray, arc] = phase(point);
@@ -82,7 +80,6 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
                         Line::new(tr("phase"), curve(&drawn))
                             .color(theme::MEASURED)
                             .width(1.0)
-                            .allow_band(false)
                             .allow_hover(false),
                     );
                 }
@@ -169,8 +166,7 @@ pub fn record_ui(ui: &mut egui::Ui, record: &Record, tuning: &MeasuredTuning, he
         plot.line(
             Line::new(tr("input u, scaled to the output"), curve(&input))
                 .color(theme::INPUT)
-                .width(1.0)
-                .allow_band(false),
+                .width(1.0),
         );
         plot.line(
             Line::new(tr("output y"), series(&record.time, &record.output))
