@@ -8,8 +8,8 @@ use hysteron_core::msg;
 use crate::export::Table;
 use crate::language::tr;
 
-/// Size of the ground of its dots and how far that is below the middle of the button, points; and how much of what lies
-/// beneath it shows no more.
+/// Size of the ground of the button's dots and how far that is below the middle of it, points; and how much it covers of
+/// what lies beneath.
 const DOTS: Vec2 = vec2(22.0, 12.0);
 const DOTS_BELOW: Vec2 = vec2(0.0, 4.0);
 const GROUND: f32 = 0.8;

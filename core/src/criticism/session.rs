@@ -490,10 +490,12 @@ impl Session {
     /// Whether all that the input gave in the whole record could not have brought a body as heavy as that of a fit to
     /// its usual speed: such a model explains a motion by where its windows begin, and nothing by the input.
     fn is_too_heavy(&self, fit: &Fit) -> bool {
-        let (scales, body) = (&self.scales, fit.values[0]);
-        let input = &self.whole().input;
+        if self.kind() != Kind::Drive {
+            return false;
+        }
+        let (scales, input) = (&self.scales, &self.whole().input);
         let mean = input.iter().map(|u| u.abs()).sum::<f64>() / input.len() as f64;
-        self.kind() == Kind::Drive && body * scales.speed > mean * scales.duration
+        fit.values[0] * scales.speed > mean * scales.duration
     }
 
     /// Whether small random forces leave what a fit of the whole record leaves.

@@ -1,5 +1,7 @@
 //! Texts with columns: where the names stand, what divides the columns, and where the numbers begin.
 
+use std::collections::BTreeMap;
+
 use super::cell::Mark;
 use super::clock::Clock;
 use super::controlled::as_in_the_loop;
@@ -135,13 +137,17 @@ pub(super) fn open(
 /// and `temp (right)`.
 fn keep_apart(fields: &mut [Field], names: &[String]) {
     let in_words = |f: &Field| f.unit.as_deref().is_some_and(|unit| !is_unit(unit));
-    let alike = |f: &Field| {
-        let mut same = fields.iter().filter(|other| other.name == f.name);
-        same.clone().count() > 1 && same.all(in_words)
-    };
-    let apart: Vec<bool> = fields.iter().map(alike).collect();
-    for ((field, name), _) in fields.iter_mut().zip(names).zip(apart).filter(|(_, a)| *a) {
-        *field = Field::named(name.trim().to_owned(), None);
+    // Of each name how many columns have it, and whether all of them have a word in brackets.
+    let mut alike: BTreeMap<String, (usize, bool)> = BTreeMap::new();
+    for field in fields.iter() {
+        let (count, words) = alike.entry(field.name.clone()).or_insert((0, true));
+        *count += 1;
+        *words &= in_words(field);
+    }
+    for (field, name) in fields.iter_mut().zip(names) {
+        if let Some((2.., true)) = alike.get(&field.name) {
+            *field = Field::named(name.trim().to_owned(), None);
+        }
     }
 }
 

@@ -104,15 +104,19 @@ fn stands_alone(values: &[f64], row: &[usize], noise: f64) -> bool {
         .min((values[last] - values[last + 1]).abs());
     // What goes on as it came, or comes as it goes on, is the peak of a motion.
     let side = (values[first] - values[first - 1]).signum();
-    let beyond = |value: usize, [near, far]: [usize; 2]| {
-        side * (values[value] - 2.0 * values[near] + values[far]) > FAR_OFF * noise
-    };
-    if !beyond(first, [first - 1, first - 2]) || !beyond(last, [last + 1, last + 2]) {
+    let before = side * off_the_line(values, first, [first - 1, first - 2]);
+    let after = side * off_the_line(values, last, [last + 1, last + 2]);
+    if before.min(after) <= FAR_OFF * noise {
         return false;
     }
     let even = (AGREE * SECOND_DIFFERENCE * noise).min(SHARE * off);
     let bend = |i: usize| (values[i - 1] - 2.0 * values[i] + values[i + 1]).abs();
     bend(first - 2) < even && bend(last + 2) < even
+}
+
+/// How far a value is off the line through two others, of which one is its neighbour.
+fn off_the_line(values: &[f64], i: usize, [near, far]: [usize; 2]) -> f64 {
+    values[i] - 2.0 * values[near] + values[far]
 }
 
 /// What the neighbours say of a value that is a glitch.
@@ -124,8 +128,9 @@ fn expected(values: &[f64], i: usize, noise: f64) -> Option<f64> {
     let said = sum(AT_VALUE, [i - 2, i - 1, i + 1, i + 2]);
     let (off, side) = ((values[i] - said).abs(), (values[i] - said).signum());
     // A kink is off the cubic through both of its sides, and lies on the line of either.
-    let beside = |near: usize, far: usize| side * (values[i] - 2.0 * values[near] + values[far]);
-    let least = beside(i - 1, i - 2).min(beside(i + 1, i + 2));
+    let before = side * off_the_line(values, i, [i - 1, i - 2]);
+    let after = side * off_the_line(values, i, [i + 1, i + 2]);
+    let least = before.min(after);
     if off < FAR_OFF * CUBIC * noise || least < 0.5 * off {
         return None;
     }

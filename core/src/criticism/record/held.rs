@@ -8,6 +8,7 @@ use super::lattice::resolution;
 use super::tuning::{
     BINARY, COUNTED, IN_STEP, LEAST_READINGS, LONGER, REPEATED, SIZES_OF_COUNTS, USUAL,
 };
+use crate::order::distinct;
 
 /// The samples with fresh readings, of a channel that holds them.
 pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
@@ -20,8 +21,9 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     let mut stays: Vec<usize> = begins.windows(2).map(|w| w[1] - w[0]).collect();
     let count = stays.len();
     let median = *stays.select_nth_unstable(count / 2).1;
+    let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
     if median < 2 {
-        return (is_fine(&begins, values) && repeats_by_chance(&stays)).then(|| {
+        return (is_fine(&readings) && repeats_by_chance(&stays)).then(|| {
             begins.insert(0, 0);
             begins
         });
@@ -29,10 +31,10 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
     let every = in_step(&stays, median);
     stays.retain(|stay| *stay > 1 && stay.abs_diff(median) <= 1);
     let usual = stays.len() as f64 >= USUAL * count as f64;
-    let readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
     // A counter that creeps goes on by one count at a time.
-    let creeps = every.is_none() || !skips_counts(&readings);
-    if usual && creeps && goes_by_counts(&readings) {
+    let moves = moves_of(&readings);
+    let creeps = every.is_none() || !skips_counts(&moves);
+    if usual && creeps && goes_by_counts(&readings, &moves) {
         return None;
     }
     // One that stays longer came again as it was.
@@ -59,12 +61,9 @@ pub(in crate::criticism) fn fresh(values: &[f64]) -> Option<Vec<usize>> {
 }
 
 /// Whether hardly any reading comes again: what repeats is the same reading, and not another one of the same size.
-fn is_fine(begins: &[usize], values: &[f64]) -> bool {
-    let mut readings: Vec<f64> = begins.iter().map(|i| values[*i]).collect();
-    readings.sort_by(f64::total_cmp);
-    let count = readings.len() as f64;
-    readings.dedup();
-    readings.len() as f64 > IN_STEP * count
+fn is_fine(readings: &[f64]) -> bool {
+    let other = distinct(readings.to_vec()).len();
+    other as f64 > IN_STEP * readings.len() as f64
 }
 
 /// Whether readings stay for a sample more now and then, as often and as long as chance has it: a logger missed the
@@ -95,15 +94,13 @@ fn moves_of(readings: &[f64]) -> Vec<f64> {
 }
 
 /// Whether some moves from one reading to the next are of more than one count.
-fn skips_counts(readings: &[f64]) -> bool {
-    let moves = moves_of(readings);
+fn skips_counts(moves: &[f64]) -> bool {
     let of_one = moves.partition_point(|m| *m < 1.5 * moves[0]);
     (moves.len() - of_one) as f64 > (1.0 - IN_STEP) * moves.len() as f64
 }
 
 /// Whether most moves from one reading to the next are of a few sizes only.
-fn goes_by_counts(readings: &[f64]) -> bool {
-    let moves = moves_of(readings);
+fn goes_by_counts(readings: &[f64], moves: &[f64]) -> bool {
     let most = readings.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let same = (0.5 * resolution(readings)).max(BINARY * most);
     let sizes = moves.chunk_by(|a, b| b - a < same);
