@@ -78,8 +78,8 @@ struct Term {
 /// The controller that made the input, if one did. Where the input is at its limits it follows nothing, and what an
 /// integral holds afterwards is not known: each stretch between them has an offset of its own.
 pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
-    let stretches = between_limits(logged);
-    let free = stretches.iter().flat_map(|s| &logged.input[s.clone()]);
+    let switched = without_jumps(logged.input, &[], between_limits(logged));
+    let free = switched.iter().flat_map(|s| &logged.input[s.clone()]);
     if distinct(free.copied().collect()).len() <= FEW_LEVELS {
         return None;
     }
@@ -88,34 +88,42 @@ pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
         values: values.to_vec(),
         about: None,
     };
-    let output = logged.output;
+    let (output, place) = (logged.output, logged.place);
     let sets = match logged.kind {
-        Kind::Process => [
+        Kind::Process => vec![
             ("proportional", vec![term("y", output)]),
             (
                 "proportional-integral",
                 vec![term("y", output), integral(output, logged.step)],
             ),
         ],
-        Kind::Drive => [
+        Kind::Drive => vec![
             ("proportional", vec![term("v", output)]),
+            ("proportional", vec![term("x", place)]),
             (
                 "proportional-derivative",
-                vec![term("x", logged.place), term("v", output)],
+                vec![term("x", place), term("v", output)],
             ),
         ],
     };
     let made = sets.into_iter().filter_map(|(kind, terms)| {
+        let stretches = without_jumps(logged.input, &terms, switched.clone());
         let law = follows(logged.input, &terms, &stretches, 0)?;
         let made = law.explained >= CONTROLLED && is_control(logged, &law, &terms, &stretches);
-        made.then_some((kind, terms, law))
+        made.then_some((kind, terms, law, stretches))
     });
     // A term more is the controller's where it explains more than it leaves.
-    let (kind, terms, law) = made.reduce(|simple, rich| {
+    let (kind, terms, law, stretches) = made.reduce(|simple, rich| {
         let worth = simple.2.left > 2.0 * rich.2.left;
         if worth { rich } else { simple }
     })?;
-    answers(logged.input, output, &stretches).then(|| Controller {
+    let answered = match logged.kind {
+        Kind::Process => answers(logged.input, output, &stretches),
+        Kind::Drive => [output, place]
+            .iter()
+            .any(|measured| answers(logged.input, measured, &stretches)),
+    };
+    answered.then(|| Controller {
         law: written(logged, &law.gains, &terms, &stretches),
         kind,
         explained: law.explained,
@@ -136,24 +144,16 @@ fn integral(output: &[f64], step: f64) -> Term {
     }
 }
 
-/// Stretches of the record without a gap in which the input is between its limits and does not jump, as it does with a
-/// set point.
+/// Stretches of the record without a gap in which the input is between its limits.
 fn between_limits(logged: &Logged<'_>) -> Vec<Range<usize>> {
-    let input = logged.input;
-    let (least, most) = range(input);
-    let change = |k: usize| (input[k] - input[k - 1]).abs();
-    let usual = (1..input.len()).map(change).sum::<f64>() / input.len() as f64;
+    let (least, most) = range(logged.input);
     let mut stretches: Vec<Range<usize>> = Vec::new();
-    for (k, u) in input.iter().enumerate().take(MOST_SAMPLES) {
+    for (k, u) in logged.input.iter().enumerate().take(MOST_SAMPLES) {
         if *u <= least || *u >= most {
             continue;
         }
         match stretches.last_mut() {
-            Some(last)
-                if last.end == k
-                    && logged.begins.binary_search(&k).is_err()
-                    && change(k) < JUMP * usual =>
-            {
+            Some(last) if last.end == k && logged.begins.binary_search(&k).is_err() => {
                 last.end = k + 1;
             }
             _ => stretches.push(k..k + 1),
@@ -161,6 +161,47 @@ fn between_limits(logged: &Logged<'_>) -> Vec<Range<usize>> {
     }
     stretches.retain(|s| s.len() >= SHORTEST_STRETCH);
     stretches
+}
+
+/// The stretches cut where the input jumps, as it does with a set point: by much more than it follows the changes of
+/// the terms elsewhere. With the jumps out, the terms are followed closer, and smaller jumps show.
+fn without_jumps(
+    input: &[f64],
+    terms: &[Term],
+    mut stretches: Vec<Range<usize>>,
+) -> Vec<Range<usize>> {
+    loop {
+        let changes = |values: &[f64]| -> Vec<f64> {
+            let parts = stretches.iter().map(|s| &values[s.clone()]);
+            parts
+                .flat_map(|part| part.windows(2).map(|w| w[1] - w[0]))
+                .collect()
+        };
+        let columns: Vec<Vec<f64>> = terms.iter().map(|t| changes(&t.values)).collect();
+        let mut left = changes(input);
+        if let Some(law) = regressed(&left, &columns) {
+            take_off(&mut left, &columns, &law.gains);
+        }
+        let usual = left.iter().map(|c| c.abs()).sum::<f64>() / left.len().max(1) as f64;
+        let mut jumps = left.iter().map(|c| c.abs() >= JUMP * usual && usual > 0.0);
+        let mut parts: Vec<Range<usize>> = Vec::new();
+        for stretch in &stretches {
+            let mut from = stretch.start;
+            for k in stretch.start + 1..stretch.end {
+                if jumps.next() == Some(true) {
+                    parts.push(from..k);
+                    from = k;
+                }
+            }
+            parts.push(from..stretch.end);
+        }
+        let whole = parts.len() == stretches.len();
+        parts.retain(|s| s.len() >= SHORTEST_STRETCH);
+        stretches = parts;
+        if whole || terms.is_empty() {
+            return stretches;
+        }
+    }
 }
 
 /// What the input follows.
@@ -309,15 +350,20 @@ fn written(
 fn regressed(target: &[f64], columns: &[Vec<f64>]) -> Option<Law> {
     let gains = least_squares(columns, target)?;
     let mut rest = target.to_vec();
-    for (gain, column) in gains.iter().zip(columns) {
-        rest.iter_mut()
-            .zip(column)
-            .for_each(|(r, v)| *r -= gain * v);
-    }
+    take_off(&mut rest, columns, &gains);
     let (squares, left) = (dot(target, target), dot(&rest, &rest));
     (squares > 0.0).then(|| Law {
         gains,
         explained: 1.0 - left / squares,
         left,
     })
+}
+
+fn take_off(values: &mut [f64], columns: &[Vec<f64>], gains: &[f64]) {
+    for (gain, column) in gains.iter().zip(columns) {
+        values
+            .iter_mut()
+            .zip(column)
+            .for_each(|(r, v)| *r -= gain * v);
+    }
 }

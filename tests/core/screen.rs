@@ -6,7 +6,7 @@ use hysteron_core::measurement::{ImportOptions, Measurement, Quantity, import};
 use hysteron_core::rig::process::{Excitation as ProcessExcitation, ProcessRig};
 use hysteron_core::rig::{DriveRig, Excitation, Friction, Load, Stranger};
 
-use crate::support::controlled::{process, under_controller};
+use crate::support::controlled::{positioned, process, under_controller};
 use crate::support::diagnosis::classes;
 use crate::support::score::diagnose;
 use crate::support::servo::servo;
@@ -346,6 +346,21 @@ fn a_controller_with_limits_is_read_off_with_its_set_point() {
         "{}",
         check.text
     );
+}
+
+/// Its set point jumps by less than the loop moves in some samples.
+#[test]
+fn a_controller_of_a_position_is_read_off_whatever_its_set_point_does() {
+    for (gain, law) in [
+        (0.1, "u = -0.100 x"),
+        (1.0, "u = -1.00 x"),
+        (3.0, "u = -3.00 x"),
+    ] {
+        let check = screen(&positioned(gain)).input_check;
+        assert_eq!(check.verdict, InputVerdict::ClosedLoop, "{}", check.text);
+        assert!(check.text.to_string().contains(law), "{}", check.text);
+        assert!(check.plant_told, "{}", check.text);
+    }
 }
 
 /// Where the set point tells the plant, so does the loop what the plant has beside its lag.

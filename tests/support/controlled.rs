@@ -1,4 +1,4 @@
-//! A process, and the same under a controller as they are built.
+//! A process and a drive, and the same under controllers as they are built.
 
 use std::fmt::Write as _;
 
@@ -34,4 +34,28 @@ pub fn under_controller() -> Measurement {
         integral += if u == wish { 0.005 * error } else { 0.0 };
         u
     })
+}
+
+/// The position of a drive under a proportional controller of this gain (N m/rad), whose set point steps by little and
+/// by much.
+pub fn positioned(gain: f64) -> Measurement {
+    const STEP: f64 = 1e-3;
+    const FINE: usize = 20;
+    let (inertia, viscous) = (1e-3, 5e-3);
+    let mut random = Random::new(13);
+    let (mut x, mut v, mut set_point) = (0.0, 0.0, 0.0);
+    let mut csv = "t [s],u [N m],x1 [rad]\n".to_owned();
+    for k in 0..3000 {
+        if k % 200 == 0 {
+            set_point = random.normal();
+        }
+        let logged = x + 1e-4 * random.normal();
+        let u = gain * (set_point - logged);
+        let _ = writeln!(csv, "{},{u},{logged}", k as f64 * STEP);
+        for _ in 0..FINE {
+            v += STEP / FINE as f64 * (u - viscous * v) / inertia;
+            x += STEP / FINE as f64 * v;
+        }
+    }
+    import("positioned.csv", csv.as_bytes(), &ImportOptions::default()).expect("a record")
 }
