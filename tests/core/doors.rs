@@ -480,6 +480,59 @@ fn rows_that_are_there_twice_are_read_once() {
 }
 
 #[test]
+fn numbers_are_read_with_their_units_behind_them() {
+    let state = |k: usize| u8::from(on(k));
+    let cell = |k: usize| format!("{k} s;{} %;{} °C", state(k), warmth(k));
+    let text = rows(40, cell);
+    is_the_heater(&accepted(&format!("time;heater;temperature\n{text}")), 1.0);
+    // Of one unit only.
+    let mixed = text.replace("7 s;0 %", "7 s;0 V");
+    let error = read(&format!("time;heater;temperature\n{mixed}")).expect_err("two units");
+    let said = "line 9, column 2 (heater): '0 V' is not a number";
+    assert!(error.to_string().contains(said), "{error}");
+}
+
+#[test]
+fn thousands_may_be_parted_where_the_decimals_have_the_other_mark() {
+    let cell = |k: usize| {
+        let decimals = format!("{:.1}", warmth(k)).replace('.', ",");
+        format!("{k};{};2.0{decimals}", u8::from(on(k)))
+    };
+    let text = rows(40, cell);
+    let read = accepted(&format!("t;heater;pressure\n{text}"));
+    for (k, pressure) in read.outputs[0].values.iter().enumerate() {
+        assert!((pressure - 2000.0 - warmth(k)).abs() < 1e-9, "{pressure}");
+    }
+}
+
+#[test]
+fn a_cell_that_is_no_number_is_said_where_it_stands() {
+    let cell = |k: usize| format!("{k},{},\"{},5\"", u8::from(on(k)), 20 + k % 10);
+    let error = read(&format!("time,heater,temperature\n{}", rows(40, cell)));
+    let error = error.expect_err("commas that part the columns and decimals");
+    let said = "line 2, column 3 (temperature): '20,5' is not a number";
+    assert!(error.to_string().contains(said), "{error}");
+}
+
+/// As a spreadsheet saves "Unicode text".
+#[test]
+fn a_text_in_utf_16_is_read() {
+    let cell = |k: usize| format!("{k};{};{}", u8::from(on(k)), warmth(k));
+    let text = format!("time;Stellgröße [%];Temperatur [°C]\n{}", rows(40, cell));
+    let orders: [([u8; 2], fn(u16) -> [u8; 2]); 2] = [
+        ([0xff, 0xfe], u16::to_le_bytes),
+        ([0xfe, 0xff], u16::to_be_bytes),
+    ];
+    for (mark, order) in orders {
+        let units: Vec<u8> = text.encode_utf16().flat_map(order).collect();
+        let file = [&mark[..], &units].concat();
+        let read = import("x.csv", &file, &ImportOptions::default());
+        is_the_heater(&read.expect("a record"), 1.0);
+        assert_eq!(columns("x.csv", &file).map(|c| c.len()).ok(), Some(3));
+    }
+}
+
+#[test]
 fn names_keep_their_numbers() {
     let row = |k| format!("{k},{},{},{},1", u8::from(on(k)), warmth(k), warmth(k + 3));
     let text = format!(

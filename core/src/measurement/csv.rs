@@ -1,6 +1,7 @@
 //! Comma-separated files, as people have them.
 
 use super::average;
+use super::cell::with_unit;
 use super::clock::{Clock, unit_from_1970};
 use super::error::{ImportError, Problem};
 use super::fill::fill;
@@ -11,7 +12,7 @@ use super::mapped::map;
 use super::mapping::ImportOptions;
 use super::period::Period;
 use super::rates;
-use super::resembling::is_period;
+use super::resembling::{RESEMBLING, Resembling, is_period, resembles};
 use super::size::wrong_size;
 use super::split::split_row;
 use super::switched_on;
@@ -47,14 +48,16 @@ pub(super) fn import_text(
     let mut notes = map(&mut fields, &options.mapping).map_err(|p| fail(Some(line), None, p))?;
     notes.extend(note.filter(|_| options.mapping.is_empty()));
     let mut options = options.clone();
+    let mut used = None;
     if let Some((place, period)) = period_column(&fields, &options, rows.clone(), dialect) {
         let name = shorten(&fields[place].name);
         notes.push(msg!(
             "The column '{}' is taken as the sampling period, {} s.",
-            Message::name(name),
+            Message::name(name.clone()),
             period.seconds()
         ));
         options.period = Some(period);
+        used = Some(name);
     }
     let look = || Some(addressed(survey(bytes).ok()?));
     notes.extend(fill(&mut fields, &options, look).map_err(|p| fail(Some(line), None, p))?);
@@ -62,7 +65,14 @@ pub(super) fn import_text(
     let (clock, note) = clock(&mut fields, first, dialect);
     notes.extend(note);
     let date = date(first, dialect.separator, &fields);
+    let units: Vec<Option<String>> = fields.iter().map(|f| f.unit.clone()).collect();
+    let unread = unread(rows.clone().next(), dialect, &fields);
     let mut header = understand(fields, &options).map_err(|(column, problem)| {
+        if let (Problem::NoColumn { .. }, None, Some((line, column, problem))) =
+            (&problem, &date, unread)
+        {
+            return fail(Some(line), column, problem);
+        }
         let problem = match (problem, date) {
             (Problem::NoColumn { wanted: "t", .. }, Some(date)) => date,
             (Problem::NoUnit { name, .. }, Some(date))
@@ -76,9 +86,17 @@ pub(super) fn import_text(
         fail(Some(line), column, problem)
     })?;
     header.notes.splice(..0, notes);
+    header.ignored.retain(|name| Some(name) != used.as_ref());
     let separator = dialect.separator;
     let located = |(line, column, problem): Failure| fail(Some(line), column, problem);
-    let mut table = read_rows(&header, dialect, clock, rows.clone()).map_err(located)?;
+    let reader = RowReader {
+        header: &header,
+        units: &units,
+        dialect,
+        times: clock,
+        other: Clock::default(),
+    };
+    let mut table = read_rows(reader, rows.clone()).map_err(located)?;
     let mended = in_order(&header, &mut table).map_err(located)?;
     check_sizes(&header, separator, rows, &table).map_err(located)?;
     let Rows {
@@ -131,6 +149,26 @@ fn period_column<'a>(
     }
     let unit = fields[place].unit.as_deref().unwrap_or("s");
     Some((place, Period::in_unit(period?, unit)?))
+}
+
+/// A cell of the first row that would be a number if it were written otherwise, in a column that is not known and could
+/// be one that is wanted.
+fn unread(row: Option<(usize, &str)>, mut dialect: Dialect, fields: &[Field]) -> Option<Failure> {
+    let (line, row) = row?;
+    let mut cells = Vec::with_capacity(fields.len());
+    split_row(row, dialect.separator, &mut cells);
+    let wanted = |field: &Field| {
+        let resembles = |r: &Resembling| resembles(r.role, &field.name);
+        field.role.is_none() && RESEMBLING.iter().any(resembles)
+    };
+    let mut all = fields.iter().zip(cells).enumerate();
+    let (place, (field, cell)) = all.find(|(_, (field, cell))| {
+        let value = dialect.mark.value(cell, &mut Clock::default());
+        wanted(field) && value.is_none() && cell.contains(|c: char| c.is_ascii_digit())
+    })?;
+    let column = format!("{} ({})", place + 1, shorten(&field.name));
+    let text = shorten(cell);
+    Some((line, Some(column), Problem::NotANumber { text }))
 }
 
 /// How the times are to be read, by the first of them, and what is to be said of it: dates count in seconds, and clocks
@@ -210,18 +248,11 @@ const LONGEST_TAIL: usize = 8;
 
 /// Reads rows.
 fn read_rows<'a>(
-    header: &Header,
-    dialect: Dialect,
-    times: Clock,
+    mut reader: RowReader<'_>,
     mut lines: impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Rows, Failure> {
+    let header = reader.header;
     let time = header.columns.iter().position(|c| c.role == Role::Time);
-    let mut reader = RowReader {
-        header,
-        dialect,
-        times,
-        other: Clock::default(),
-    };
     let mut rows = Rows {
         values: vec![Vec::new(); header.columns.len()],
         ..Rows::default()
@@ -266,6 +297,8 @@ fn read_rows<'a>(
 /// What reads a row.
 struct RowReader<'a> {
     header: &'a Header,
+    /// Units of all columns: a number may have its unit behind it, and no other.
+    units: &'a [Option<String>],
     dialect: Dialect,
     times: Clock,
     other: Clock,
@@ -308,7 +341,10 @@ impl RowReader<'_> {
             } else {
                 &mut self.other
             };
-            let value = self.dialect.mark.value(text, clock).ok_or_else(|| {
+            let value = self.dialect.mark.value(text, clock);
+            let own = self.units.get(column.index).and_then(Option::as_deref);
+            let same = |_: &f64| with_unit(text).is_none_or(|(_, unit)| Some(unit) == own);
+            let value = value.filter(same).ok_or_else(|| {
                 let (name, text) = (column.name.clone(), shorten(text));
                 let problem = if is_time && is_date(&text) {
                     Problem::Date { name, text }

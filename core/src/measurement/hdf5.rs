@@ -7,7 +7,7 @@
 use hdf5_pure::{AttrValue, DType, Dataset, Error, File, Group, Object};
 
 use super::error::Problem;
-use super::header::shorten;
+use super::header::begin_of;
 use super::mat::{DEEPEST, LARGEST, columns};
 use super::series::Series;
 
@@ -17,7 +17,7 @@ const MOST_DATASETS: usize = 10_000;
 /// All series of numbers in a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<Series>, Problem> {
     let damaged = |e: Error| Problem::Hdf5Damaged {
-        what: shorten(&e.to_string()),
+        what: begin_of(&e.to_string()),
     };
     let file = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
     let mut walk = Walk {

@@ -4,7 +4,7 @@ pub(super) use super::column::{Role, begin_of, role, shorten};
 use super::error::Problem;
 use super::mapping::ImportOptions;
 use super::period::Period;
-use super::unit::{self, ACCEPTED, Measures};
+use super::unit::{self, Measures};
 use super::{Kind, Quantity};
 use crate::message::Message;
 use crate::msg;
@@ -314,7 +314,7 @@ fn convert(
 ) -> Result<(Measures, f64, String), Problem> {
     use Measures::{Angle, AngularVelocity, Force, Length, Speed, Time, Torque};
     let expected: (&[Measures], &'static str) = match (role, kind) {
-        (Role::Time, _) => (&[Time], "a time: s, ms, us, min"),
+        (Role::Time, _) => (&[Time], "a time: s, ms, us, ns, min, h"),
         (_, Kind::Process) => return Ok((Measures::Other, 1.0, unit.to_owned())),
         (Role::Measured(Quantity::Input), _) => (
             &[Torque, Force],
@@ -350,13 +350,9 @@ fn convert(
         Some((measures, factor)) if fits(measures) => {
             Ok((measures, factor, measures.si().to_owned()))
         }
-        Some(_) => Err(Problem::WrongUnit {
+        _ => Err(Problem::WrongUnit {
             unit: shorten(unit),
             expected: Box::new(expected.1.into()),
-        }),
-        None => Err(Problem::WrongUnit {
-            unit: shorten(unit),
-            expected: Box::new(msg!("{}; accepted: {}", expected.1, ACCEPTED)),
         }),
     }
 }

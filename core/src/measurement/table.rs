@@ -41,6 +41,7 @@ pub fn import(
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<Measurement, ImportError> {
+    let bytes = &*text::in_utf8(bytes);
     read(name, bytes, options).map_err(|error| {
         let columns = || all_columns(bytes).ok();
         let refused = |options: &ImportOptions| read(name, bytes, options).err().map(|e| e.problem);
@@ -115,7 +116,7 @@ fn table(bytes: &[u8]) -> Result<Option<Table>, text::Located> {
 /// # Errors
 /// One line that says why the file has none, where it is damaged or of another format.
 pub fn columns(name: &str, bytes: &[u8]) -> Result<Vec<FoundColumn>, ImportError> {
-    let found = all_columns(bytes);
+    let found = all_columns(&text::in_utf8(bytes));
     let mut found = found.map_err(|(line, p)| ImportError::new(name, line, None, p))?;
     found.retain(|column| column.numbers.count >= MIN_SAMPLES);
     Ok(found)

@@ -1,16 +1,15 @@
 //! Texts with columns: where the names stand, what divides the columns, and where the numbers begin.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::cell::Mark;
+use super::cell::{Mark, is_unit, with_unit};
 use super::clock::Clock;
 use super::controlled::as_in_the_loop;
 use super::error::Problem;
 use super::found::Numbers;
 use super::header::{Field, has_number, name_and_unit};
-use super::resembling::is_of_process;
 use super::split::{BLANKS, split_header, split_row};
-use super::unit::parse_input;
 use crate::message::Message;
 
 /// A problem and its line.
@@ -46,6 +45,18 @@ pub(super) fn table_of_scenario(bytes: &[u8]) -> Option<&'static str> {
     let name = first.split('#').next()?.trim_end();
     let name = name.strip_prefix('[')?.strip_suffix(']')?.trim();
     TABLES_OF_SCENARIO.into_iter().find(|table| *table == name)
+}
+
+/// The bytes of a file in UTF-8: a text in UTF-16 says so with its first two.
+pub(super) fn in_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let (units, unit): (&[u8], fn([u8; 2]) -> u16) = match bytes {
+        [0xff, 0xfe, units @ ..] => (units, u16::from_le_bytes),
+        [0xfe, 0xff, units @ ..] => (units, u16::from_be_bytes),
+        _ => return Cow::Borrowed(bytes),
+    };
+    let units = units.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    let text: Result<String, _> = char::decode_utf16(units).collect();
+    text.map_or(Cow::Borrowed(bytes), |text| Cow::Owned(text.into_bytes()))
 }
 
 /// The text of a file, without its byte order mark.
@@ -123,6 +134,9 @@ pub(super) fn open(
         rows.next();
         labelled(&mut fields, labels);
     }
+    if let Some((_, row)) = rows.clone().next() {
+        units_of_cells(&mut fields, row, separator);
+    }
     let note = as_in_the_loop(&mut fields, values(dialect, rows.clone()));
     Ok(Text {
         fields,
@@ -131,6 +145,17 @@ pub(super) fn open(
         note,
         rows: if numeric { whole } else { rows },
     })
+}
+
+/// Gives columns without a unit the one that stands behind their first number.
+fn units_of_cells(fields: &mut [Field], row: &str, separator: char) {
+    let mut cells = Vec::with_capacity(fields.len());
+    split_row(row, separator, &mut cells);
+    for (field, cell) in fields.iter_mut().zip(cells) {
+        if let (None, Some((_, unit))) = (&field.unit, with_unit(cell)) {
+            field.unit = Some(unit.to_owned());
+        }
+    }
 }
 
 /// Gives columns their whole names where only what stands in brackets, and is no unit, tells them apart: `temp (left)`
@@ -209,10 +234,6 @@ fn labels(row: &str, separator: char, fields: &[Field]) -> Option<Vec<String>> {
         };
         units.into_iter().zip(texts).map(whole).collect()
     })
-}
-
-fn is_unit(text: &str) -> bool {
-    parse_input(text).is_some() || is_of_process(text)
 }
 
 /// Gives columns what stands below their names: a unit, or where it is none and the name says nothing, another name.

@@ -45,7 +45,7 @@ impl Measures {
 }
 
 /// What is accepted, for messages.
-pub(super) const ACCEPTED: &str = "time s, ms, us, ns, min; torque N m, mN m; force N, mN, kN; current A, mA; voltage \
+pub(super) const ACCEPTED: &str = "time s, ms, us, ns, min, h; torque N m, mN m; force N, mN, kN; current A, mA; voltage \
     V, mV; command %, PWM, counts, 1; angle rad, mrad, deg, rev; length m, mm, um; velocity rad/s, deg/s, rpm, m/s, \
     mm/s; counts with their resolution, such as [counts, 4096/rev] or [counts, 0.001 mm]";
 

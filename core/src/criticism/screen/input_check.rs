@@ -25,6 +25,7 @@ pub(super) fn left(bench: &Bench, tried: &[Tried]) -> f64 {
 
 /// What the screen found says of the input.
 pub(super) fn checked(
+    input_name: &str,
     signals: &Signals,
     widths: &[Width],
     bench: &Bench,
@@ -46,7 +47,10 @@ pub(super) fn checked(
             .velocity
             .as_ref()
             .map_or(&signals.speed, |v| &v.values),
-        place: &signals.place,
+        place: signals
+            .position
+            .as_ref()
+            .map_or(&signals.place, |x| &x.values),
     };
     if let Some(made) = controller(&logged) {
         let plant = smallest(tried, bench.motion())
@@ -80,8 +84,9 @@ pub(super) fn checked(
                 InputVerdict::Sign,
                 msg!(
                     "The sign of the input is flipped: the inertia comes out negative, and with the other sign the \
-                     input explains all but {} % of the motion. Give the column a minus, as in --map \"u=-NAME\".",
-                    fixed(share, 1)
+                     input explains all but {} % of the motion. Give the column a minus, as in --map \"u=-{}\".",
+                    fixed(share, 1),
+                    Message::name(input_name)
                 ),
             );
         }

@@ -44,7 +44,7 @@ pub(super) fn screening(
 ) -> Screening {
     let motion = bench.motion();
     let share = |loss: f64| (loss / motion.max(f64::MIN_POSITIVE)).sqrt();
-    let input_check = input_check::checked(signals, widths, bench, tried);
+    let input_check = input_check::checked(&measurement.input.name, signals, widths, bench, tried);
     let mut class = smallest(tried, motion);
     if input_check.verdict == InputVerdict::ClosedLoop {
         class.retain(|t| bench.settles(&t.members));
