@@ -120,6 +120,16 @@ impl OneWay {
         true
     }
 
+    /// Whether its input is a constant while it moves.
+    pub fn is_pushed_alike(&self) -> bool {
+        let mut inputs: Vec<f64> = self.moving.iter().map(|m| m[0]).collect();
+        let usual = quantile(&mut inputs, 0.5);
+        let same = inputs
+            .iter()
+            .filter(|u| (*u - usual).abs() <= SAME * usual.abs());
+        same.count() == inputs.len()
+    }
+
     /// Whether it rests somewhere where a load of this size would have turned it back: what holds it there is friction.
     fn is_held_at_rest(&self, load: f64, body: &Model) -> bool {
         self.rests.iter().any(|[duration, input]| {

@@ -17,7 +17,7 @@ use super::select::{delta_bic, is_all_that_counters_show, is_noise, outweighs};
 use super::session::{Rest, Scored, Session, small_share};
 use super::verdict::{
     Class, PartOfTheWay, Refused, add_both_ways, add_dry_friction, add_experiments, add_hint,
-    add_idle, add_input_check, add_integrating, add_other_experiment, add_overruled,
+    add_idle, add_input_check, add_integrating, add_one_push, add_other_experiment, add_overruled,
     add_part_of_the_way, add_relay_loop, add_rest, add_wander, verdict,
 };
 use crate::diagnosis::{
@@ -218,8 +218,9 @@ impl Tell {
             })
             .unzip();
         let one_way = OneWay::of(session);
-        let is_joined =
-            one_way.is_some_and(|o| o.join(session, &trial.scored.fit, &mut added, &mut classes));
+        let fit = &trial.scored.fit;
+        let joins = |o: &OneWay| o.join(session, fit, &mut added, &mut classes);
+        let is_joined = one_way.as_ref().is_some_and(joins);
         let mut verdict = verdict(
             &added,
             &classes,
@@ -228,8 +229,11 @@ impl Tell {
             told.rest,
             self.contradicted.clone(),
         );
+        let is_pushed_alike = one_way.is_some_and(|o| o.is_pushed_alike());
         if is_joined {
             add_both_ways(&mut verdict);
+        } else if added.is_empty() && is_pushed_alike {
+            add_one_push(&mut verdict);
         } else {
             add_other_experiment(&mut verdict, &session.whole().input);
             add_experiments(&mut verdict, &self.experiments);

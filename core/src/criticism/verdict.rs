@@ -231,6 +231,15 @@ pub(super) fn add_both_ways(verdict: &mut Verdict) {
     verdict.next_experiment = Some(BOTH_WAYS.into());
 }
 
+/// Says that what is a constant cannot show where the input is one too.
+pub(super) fn add_one_push(verdict: &mut Verdict) {
+    verdict.text.add(
+        "While the drive moved, its input had one value: dry friction, a constant load or a dead zone would only make \
+         the inertia and the viscous friction look larger or smaller, so this record cannot tell whether there is any.",
+    );
+    verdict.next_experiment = Some(BOTH_WAYS.into());
+}
+
 /// Says that a process integrates, and how fast its output moves.
 pub(super) fn add_integrating(verdict: &mut Verdict, parameters: &[Parameter]) {
     let rate = parameters

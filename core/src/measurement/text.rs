@@ -49,12 +49,19 @@ pub(super) fn table_of_scenario(bytes: &[u8]) -> Option<&'static str> {
 
 /// The bytes of a file in UTF-8: a text in UTF-16 says so with its first two.
 pub(super) fn in_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let (units, unit): (&[u8], fn([u8; 2]) -> u16) = match bytes {
-        [0xff, 0xfe, units @ ..] => (units, u16::from_le_bytes),
-        [0xfe, 0xff, units @ ..] => (units, u16::from_be_bytes),
+    let (units, low_first) = match bytes {
+        [0xff, 0xfe, units @ ..] => (units, true),
+        [0xfe, 0xff, units @ ..] => (units, false),
         _ => return Cow::Borrowed(bytes),
     };
-    let units = units.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    let units = units.chunks_exact(2).map(|pair| {
+        let pair = [pair[0], pair[1]];
+        if low_first {
+            u16::from_le_bytes(pair)
+        } else {
+            u16::from_be_bytes(pair)
+        }
+    });
     let text: Result<String, _> = char::decode_utf16(units).collect();
     text.map_or(Cow::Borrowed(bytes), |text| Cow::Owned(text.into_bytes()))
 }

@@ -47,10 +47,7 @@ pub(super) fn checked(
             .velocity
             .as_ref()
             .map_or(&signals.speed, |v| &v.values),
-        place: signals
-            .position
-            .as_ref()
-            .map_or(&signals.place, |x| &x.values),
+        place: &signals.place,
     };
     if let Some(made) = controller(&logged) {
         let plant = smallest(tried, bench.motion())

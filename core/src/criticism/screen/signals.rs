@@ -30,7 +30,7 @@ pub(in crate::criticism) struct Signals {
     pub position: Option<Seen>,
     /// Velocity of a drive as measured; the output of a process.
     pub velocity: Option<Seen>,
-    /// Position without noise, or the integral of the velocity; empty for a process.
+    /// Position as measured, or the integral of the velocity; empty for a process.
     pub place: Vec<f64>,
     /// Velocity without noise; the output of a process as measured.
     pub speed: Vec<f64>,
