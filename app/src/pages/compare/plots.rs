@@ -215,10 +215,6 @@ fn signal_plot(
 ) {
     let label = titled(Message::name(output.title()), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
-    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
-    let alone = measurement.outputs.len() == 1;
-    let marked = finding.filter(|f| alone || is_about(f, output));
-    let words = marked.map_or(0.0, |_| f64::from(WORDS / (size.height - BELOW)));
     let shown = plot(
         measurement,
         finding,
@@ -232,7 +228,7 @@ fn signal_plot(
             &measurement.time,
             &[&output.values, model],
             &[],
-            words,
+            0.0,
         );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
@@ -258,7 +254,6 @@ fn signal_plot(
                     .width(1.5),
             );
         }
-        mark(plot, marked, ground);
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
@@ -284,6 +279,10 @@ fn residual_plot(
         let pairs = output.values.iter().skip(from).zip(modelled);
         pairs.map(|(y, m)| y - m).collect()
     });
+    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
+    let alone = measurement.outputs.len() == 1;
+    let marked = finding.filter(|f| alone || is_about(f, output));
+    let words = marked.map_or(0.0, |_| f64::from(WORDS / (size.height - BELOW)));
     let shown = plot(
         measurement,
         finding,
@@ -306,7 +305,7 @@ fn residual_plot(
             &measurement.time,
             &[&residual, &earlier],
             &others,
-            0.0,
+            words,
         );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
@@ -334,6 +333,7 @@ fn residual_plot(
             let line = HLine::new(tr("noise, ±2σ"), side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
         }
+        mark(plot, marked, ground);
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
