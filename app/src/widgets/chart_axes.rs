@@ -23,6 +23,9 @@ const FINEST: f64 = 8.0;
 const LETTER: f64 = 7.5;
 const APART: f64 = 6.0;
 
+/// Letters that a symbol has at most, with its index.
+const SYMBOL: usize = 2;
+
 /// Height of the labels and of the name of x below a plot, points.
 const BELOW: f32 = 40.0;
 
@@ -128,7 +131,7 @@ fn label(value: f64, step: f64, factor: f64) -> String {
 }
 
 /// The name of y beside a chart of this height, on more lines where one would lie over what is above and below; its
-/// unit stays together.
+/// unit stays together, and a symbol with its word: `input u`.
 pub(super) fn beside(name: &str, height: f32, width: impl Fn(&str) -> f32) -> String {
     let room = height - BELOW;
     if width(name) <= room {
@@ -138,12 +141,20 @@ pub(super) fn beside(name: &str, height: f32, width: impl Fn(&str) -> f32) -> St
         Some((plain, unit)) => (plain, Some(format!("[{unit}"))),
         None => (name, None),
     };
+    let is_symbol = |word: &str| word.chars().filter(|c| c.is_alphanumeric()).count() <= SYMBOL;
     let mut lines: Vec<String> = Vec::new();
-    for word in plain.split(' ').chain(unit.as_deref()) {
-        let longer = lines.last().map(|line| format!("{line} {word}"));
+    let mut parts: Vec<String> = Vec::new();
+    for word in plain.split(' ') {
+        match parts.last_mut() {
+            Some(part) if is_symbol(word) => *part = format!("{part} {word}"),
+            _ => parts.push(word.to_owned()),
+        }
+    }
+    for part in parts.iter().map(String::as_str).chain(unit.as_deref()) {
+        let longer = lines.last().map(|line| format!("{line} {part}"));
         match (lines.last_mut(), longer) {
             (Some(line), Some(longer)) if width(&longer) <= room => *line = longer,
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(part.to_owned()),
         }
     }
     lines.join("\n")
@@ -192,9 +203,12 @@ pub(super) fn grid(input: &GridInput, [apart, least_apart]: [f32; 2]) -> [f64; 3
     let wanted = ((high - low) / 7.0).max(f64::from(apart) * point);
     let step = round_step(wanted.max(f64::MIN_POSITIVE));
     let closer = [0.5, 0.4, 0.2].map(|share| round_step(0.99 * share * step));
+    // Less round ones where none of these has two labels.
+    let other = [0.8, 0.6, 0.4, 0.3].map(|share| share * step);
     let step = [step]
         .into_iter()
         .chain(closer)
+        .chain(other)
         .find(|s| labels(input, *s) >= FEWEST_LABELS && *s >= f64::from(least_apart) * point)
         .unwrap_or(step);
     // A finer line that is far enough from the next would have a label too.
@@ -280,6 +294,11 @@ mod tests {
     fn a_low_plot_has_two_labels() {
         assert_eq!(lines((-1.1, 1.1), 220.0), [0.25, 0.5, 5.0]);
         assert_eq!(lines((-0.9, 0.9), 60.0), [0.25, 0.5, 5.0], "not 0 alone");
+        assert_eq!(
+            lines((-0.9, 0.9), 42.0)[1],
+            0.8,
+            "0.5 would be too close, 1 not in view"
+        );
         assert_eq!(lines((-1.1, 1.1), 24.0)[1], 5.0, "no room for two");
     }
 
@@ -377,6 +396,7 @@ mod tests {
         for (name, height, lines) in [
             (long, 150.0, "Mittelwert\n[× Rauschen]"),
             (long, 210.0, long),
+            ("output y, input u", 140.0, "output y,\ninput u"),
             ("x1 [mrad]", 82.0, "x1\n[mrad]"),
             ("x1 [mrad]", 104.0, "x1 [mrad]"),
             ("x1 - model [µrad]", 137.0, "x1 - model\n[µrad]"),
