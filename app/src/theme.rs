@@ -304,6 +304,14 @@ pub fn tell(text: &egui::Response) {
     });
 }
 
+/// How much the ground of words hides of the curves under it.
+const GROUND: f32 = 0.8;
+
+/// The ground of words that stand over curves.
+pub fn behind_words(visuals: &egui::Visuals) -> Color32 {
+    visuals.extreme_bg_color.gamma_multiply(GROUND)
+}
+
 /// A curve's colour as text, which needs more contrast: lighter on a dark ground, darker on a light one.
 pub fn readable(ui: &egui::Ui, color: Color32) -> Color32 {
     if ui.visuals().dark_mode {

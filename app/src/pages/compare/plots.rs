@@ -38,9 +38,6 @@ const BELOW: f32 = 40.0;
 /// Room above and below what is in view, as a share of it.
 const ROOM: f64 = 0.08;
 
-/// How much the ground of words hides of the curves under it.
-const GROUND: f32 = 0.75;
-
 /// What jumps of the residual are.
 const RESTARTED: &str = "In each short window the model starts afresh from an estimated state, so that small errors do \
     not add up: where one begins, the residual (measured minus model) may jump.";
@@ -279,7 +276,7 @@ fn residual_plot(
         let pairs = output.values.iter().skip(from).zip(modelled);
         pairs.map(|(y, m)| y - m).collect()
     });
-    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
+    let ground = theme::behind_words(ui.visuals());
     let alone = measurement.outputs.len() == 1;
     let marked = finding.filter(|f| alone || is_about(f, output));
     let words = marked.map_or(0.0, |_| f64::from(WORDS / (size.height - BELOW)));
