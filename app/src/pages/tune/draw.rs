@@ -46,6 +46,10 @@ pub fn controller(pid: &Pid) -> String {
 pub const CAPTION: f32 = 26.0;
 
 /// An empty plot with named axes; the wheel scrolls the page.
+/// The output of a loop, and what it answers.
+pub const SET_POINT_STEP: &str = "output y, set-point step";
+pub const LOAD_STEP: &str = "output y, load step";
+
 pub fn plot<'a>(id: &str, height: f32, x: &'static str, y: impl Into<Message>) -> Chart<'a> {
     Chart::new(id, [x.into(), y.into()], height, 0.0)
 }
