@@ -21,6 +21,7 @@ use super::chart_reading::{Reader, reading};
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
 use crate::language::tr;
+use crate::symbols;
 use crate::theme;
 pub use hysteron_core::curve::{envelope, extremes, sparse};
 use hysteron_core::message::Message;
@@ -320,7 +321,7 @@ fn with_axes<'a>(
     let font = egui::TextStyle::Body.resolve(ui.style());
     let wide = |text: &str| theme::text_width(ui, text.to_owned(), font.clone());
     let y = AxisHints::new_y()
-        .label(beside(&y, height, wide))
+        .label(symbols::body(ui, &beside(&y, height, wide)))
         .min_thickness(width)
         .label_spacing(shown_from(LABELS[1][1]));
     let (y, plot) = if decades[1] {
@@ -334,7 +335,7 @@ fn with_axes<'a>(
         (y, plot.y_grid_spacer(uniform_grid_spacer(lines)))
     };
     let x = AxisHints::new_x()
-        .label(x)
+        .label(symbols::body(ui, &x))
         .label_spacing(shown_from(LABELS[0][1]));
     let (x, plot) = if decades[0] {
         let x = x.formatter(|mark, _| power_label(mark.value));

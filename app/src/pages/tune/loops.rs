@@ -14,6 +14,7 @@ use super::draw::{
 use super::stage::{Seen, Stage};
 use crate::export::Table;
 use crate::language::tr;
+use crate::symbols;
 use crate::theme;
 use crate::widgets::chart::{Key, Shape, caption_ui, sparse};
 
@@ -27,7 +28,6 @@ pub const STAGE: Stage = Stage {
     ui,
 };
 
-fn answer(seen: Seen<'_>) -> Message {
 /// Time that responses are shown, in times that the slowest takes to settle.
 const SETTLED: f64 = 1.4;
 
@@ -38,6 +38,7 @@ const NEAR: f64 = 1.5;
 /// Room above and below them, as a share of their height.
 const ROOM: f64 = 0.05;
 
+fn answer(seen: Seen<'_>) -> Message {
     let report = seen.report;
     let before = &report.before;
     let after = match &report.after {
@@ -64,11 +65,12 @@ const ROOM: f64 = 0.05;
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let report = seen.report;
     let after = report.after.as_ref().ok();
-    ui.label(tr(msg!(
+    let controllers = tr(msg!(
         "Before: {}. After: {}.",
         controller(&report.before.pid),
         after.map_or_else(|| "none".into(), |a| Message::from(controller(&a.pid)))
-    )));
+    ));
+    ui.label(symbols::body(ui, &controllers));
     let half = (0.5 * height - 16.0).max(200.0);
     beside(
         ui,
@@ -93,7 +95,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
 
 /// The response to a step of the set point, before and after.
 pub fn step_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
-    let name = ["step response", "output y, set point 1"];
+    let name = ["step response", SET_POINT_STEP];
     let after = seen.report.after.as_ref().ok();
     let before = &seen.report.before;
     response_ui(ui, name, before, after, |l| &l.set_point, height);
@@ -126,8 +128,6 @@ pub fn tables(report: &TuningReport) -> Vec<Table> {
     TABLES.into_iter().zip(responses).map(table).collect()
 }
 
-fn response_ui(
-    ui: &mut egui::Ui,
 /// Time that is shown at first, s: until all responses of the stable loops have settled, and a little longer; all of it
 /// where one has not settled.
 fn shown_until(before: &LoopReport, after: Option<&LoopReport>) -> f64 {
@@ -145,6 +145,8 @@ fn shown_until(before: &LoopReport, after: Option<&LoopReport>) -> f64 {
     }
 }
 
+fn response_ui(
+    ui: &mut egui::Ui,
     [id, axis]: [&'static str; 2],
     before: &LoopReport,
     after: Option<&LoopReport>,
@@ -199,8 +201,6 @@ fn curves(tuned: bool) -> Vec<Key> {
     curves
 }
 
-fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, height: f32) {
-    let mut curves = curves(after.is_some());
 /// What of the plane is seen at first, in a plot of this ratio of width to height: the curves near the origin and -1, and
 /// as much beside them as there is room for.
 fn nyquist_view(curves: impl Iterator<Item = [f64; 2]>, aspect: f64) -> [[f64; 2]; 2] {
@@ -217,15 +217,17 @@ fn nyquist_view(curves: impl Iterator<Item = [f64; 2]>, aspect: f64) -> [[f64; 2
     [[x[0] - beside, x[1] + beside], y]
 }
 
+fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, height: f32) {
+    let mut curves = curves(after.is_some());
     curves.push(("unit circle", theme::NOISE, Shape::Dashes));
     curves.push(("-1", theme::MODEL, Shape::Cross));
     caption_ui(ui, "", &curves);
-    plot(
-        "loop nyquist",
     let drawn = [Some(before), after].into_iter().flatten();
     let drawn = drawn.flat_map(|l| l.nyquist.iter().copied());
     let aspect = f64::from(ui.available_width() / (height - CAPTION).max(1.0));
     let [x, y] = nyquist_view(drawn, aspect);
+    plot(
+        "loop nyquist",
         height - CAPTION,
         "real part",
         "imaginary part",
@@ -272,7 +274,7 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
     let [before_color, after_color] = [BEFORE, AFTER].map(|c| theme::readable(ui, c));
     table(ui, "loops", &["", "before", "after"], |ui| {
         let mut row = |name: &'static str, value: &dyn Fn(&LoopReport) -> Message| {
-            ui.label(tr(name));
+            ui.label(symbols::body(ui, &tr(name)));
             ui.colored_label(before_color, tr(value(before)));
             ui.colored_label(after_color, tr(after.map_or_else(Message::default, value)));
             ui.end_row();
