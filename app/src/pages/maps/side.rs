@@ -40,8 +40,8 @@ impl Maps {
             self.point = self.point.map(|[x, y]| [y, x]);
         }
         ui.add_space(4.0);
-        let note = "Everything else is as set in Explore. Amplitude: half of peak to peak. Ku = 4k/(πa), with the exact \
-            amplitude a.";
+        let note = "Everything else is as set in Explore. Amplitude: half of peak to peak. Ku = 4k/(πa), with the \
+            exact amplitude a.";
         ui.label(symbols::small(ui, &tr(note)));
     }
 

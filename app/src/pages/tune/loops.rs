@@ -201,8 +201,8 @@ fn curves(tuned: bool) -> Vec<Key> {
     curves
 }
 
-/// What of the plane is seen at first, in a plot of this ratio of width to height: the curves near the origin and -1, and
-/// as much beside them as there is room for.
+/// What of the plane is seen at first, in a plot of this ratio of width to height: the curves near the origin and -1,
+/// and as much beside them as there is room for.
 fn nyquist_view(curves: impl Iterator<Item = [f64; 2]>, aspect: f64) -> [[f64; 2]; 2] {
     let near = curves.filter(|p| p[0].hypot(p[1]) <= NEAR);
     // -1 with room for its mark, and the origin.
