@@ -27,6 +27,7 @@ mod purpose_line;
 mod recent;
 mod save;
 mod shortcuts;
+mod symbols;
 mod theme;
 mod widgets;
 mod zoom;

@@ -1,6 +1,7 @@
 //! Describing function, exact and simulated cycle side by side.
 
 use crate::language::{tr, tr_number};
+use crate::symbols;
 use crate::theme;
 use crate::widgets::chart::significant;
 use hysteron_core::message::{Message, signed};
@@ -36,7 +37,7 @@ pub fn ui<const N: usize>(
         .show(ui, |ui| {
             ui.strong("");
             for title in titles {
-                ui.strong(tr(title));
+                ui.label(symbols::strong(ui, &tr(title)));
             }
             ui.strong(tr("stable"));
             ui.end_row();
