@@ -65,6 +65,10 @@ pub struct Controller {
     pub kind: &'static str,
     /// Share of the variance of the input that it explains, where it is not at a limit.
     pub explained: f64,
+    /// Gain of its first term, in units of the input per unit of what it measures.
+    pub gain: f64,
+    /// Whether its set point changed: else the input says nothing that the output does not.
+    pub is_led: bool,
 }
 
 /// A term that a controller may have.
@@ -127,6 +131,9 @@ pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
         law: written(logged, &law.gains, &terms, &stretches),
         kind,
         explained: law.explained,
+        gain: law.gains[0],
+        is_led: follows(logged.input, &terms, &switched, 0)
+            .is_none_or(|one| one.explained < CONTROLLED),
     })
 }
 

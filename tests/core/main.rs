@@ -30,6 +30,7 @@ mod limit_cycles;
 mod lost_rows;
 
 mod explained;
+mod measured_input;
 mod measured_tuning;
 mod missing_force;
 mod mystery;

@@ -59,3 +59,21 @@ pub fn positioned(gain: f64) -> Measurement {
     }
     import("positioned.csv", csv.as_bytes(), &ImportOptions::default()).expect("a record")
 }
+
+/// The level of a tank that gains 0.02 a second from each unit of its input, under a proportional-integral controller
+/// whose set point steps.
+pub fn level_under_controller() -> Measurement {
+    let mut random = Random::new(17);
+    let (mut level, mut integral) = (50.0, 0.0);
+    let mut csv = "t [s],u [1],y [1]\n".to_owned();
+    for k in 0..2000 {
+        let set_point = 50.0 + 10.0 * f64::from(k / 300 % 2);
+        let y = level + 0.05 * random.normal();
+        let error = set_point - y;
+        let u = 3.0 * error + integral;
+        integral += 0.02 * error;
+        let _ = writeln!(csv, "{k},{u},{y}");
+        level += 0.02 * u;
+    }
+    import("level.csv", csv.as_bytes(), &ImportOptions::default()).expect("a record")
+}

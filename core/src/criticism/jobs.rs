@@ -2,6 +2,7 @@
 
 use super::contradicted::contradictions;
 use super::explain::Explain;
+use super::input_noise::prepared;
 use super::next_experiment::{Design, TRYING};
 use super::screen::Screened;
 use super::session::Session;
@@ -29,7 +30,7 @@ impl Search {
         effects: &[EffectId],
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
-        let (session, screened) = Session::screened(measurement, model)?;
+        let (session, screened) = prepared(measurement, model)?;
         let held = session.chosen(model, effects)?;
         let explain = Explain::new(held);
         Ok(Self {

@@ -14,6 +14,7 @@ mod explain;
 mod fingerprint;
 mod fit;
 mod guess;
+mod input_noise;
 mod integrating;
 mod jobs;
 mod knowledge;

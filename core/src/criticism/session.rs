@@ -7,16 +7,17 @@ use super::data::Data;
 use super::fit::Fit;
 use super::guess::guess;
 use super::knowledge::{self, Knowledge};
-use super::noise::{WANDER, is_left_by_random_forces, is_noise_with_memory};
+use super::noise::{WANDER, is_left_by_random_forces, is_noise_with_memory, left_by_input};
 use super::probes::{Probed, Probes};
+use super::record::Levelled;
 use super::relay_loop::RelayLoop;
 use super::score::{Score, motion_square, score};
 use super::screen::Screened;
-use super::select::{SAMPLED_SHARE, SMALL_SHARE, is_noise};
+use super::select::{CHANCE, SAMPLED_SHARE, SMALL_SHARE, is_noise};
 use super::sight::{Sighted, felt_gap, sight};
 use super::split::hold_back;
 use crate::crew::Crew;
-use crate::diagnosis::{CriticismError, InputCheck, InputVerdict, Screening};
+use crate::diagnosis::{CriticismError, InputCheck, Screening};
 use crate::effect::{
     self, Dimension, Effect, EffectId, ParameterSpec, Probe, ProbeInput, ProbeOutput, Range,
     Scales, SeenGap, baseline::Baseline,
@@ -77,9 +78,6 @@ pub(super) enum Rest {
 /// Error up to which noise that remembers some samples may be larger than their differences show.
 const MOST_REMEMBERED: f64 = 2.0;
 
-/// Error up to which small random forces may be what is left.
-const MOST_PUSHED: f64 = 2.5;
-
 /// Standard errors by which a parameter that tells of an effect must differ from 0: its 95 % interval leaves it out.
 pub(super) const TELLING: f64 = NORMAL_95;
 
@@ -100,7 +98,7 @@ const HELD_FACTOR: f64 = 4.0;
 
 /// Inertia and viscous friction that the screen of a drive told.
 fn told_body(screening: &Screening) -> Option<[f64; 2]> {
-    let told = screening.kind == Kind::Drive && screening.input_check.verdict == InputVerdict::Ok;
+    let told = screening.kind == Kind::Drive && screening.input_check.plant_told;
     let value = |k: usize| screening.body.get(k).map(|p| p.value);
     let body = [value(0)?, value(1)?.max(0.0)];
     (told && body[0] > 0.0).then_some(body)
@@ -147,6 +145,8 @@ pub(super) struct Session {
     pub input_check: InputCheck,
     /// The gap that a drifting test shows.
     pub gap: Option<SeenGap>,
+    /// The input on its levels, if its noise was taken off.
+    pub levelled: Option<Levelled>,
     /// The loop in which the record was made, if a relay closed it.
     pub relay_loop: Option<RelayLoop>,
     pub input_unit: String,
@@ -155,11 +155,7 @@ pub(super) struct Session {
 }
 
 impl Session {
-    pub fn new(measurement: &Measurement, model: &UserModel) -> Result<Self, CriticismError> {
-        Self::screened(measurement, model).map(|(session, _)| session)
-    }
-
-    /// The same with the record as it was screened.
+    /// What is known of a record, and the record as it was screened.
     pub fn screened(
         measurement: &Measurement,
         model: &UserModel,
@@ -214,6 +210,7 @@ impl Session {
             data: compared,
             motion: measurement.motion(),
             gap,
+            levelled: None,
             relay_loop,
             input_unit: measurement.input.unit.clone(),
             outputs: measurement
@@ -442,31 +439,45 @@ impl Session {
             let values = &fit.values[fit.structure.range(place)];
             let model = fit.structure.model(&fit.values);
             let step = self.data.excitation.mean_step();
-            effect.is_of_record() || effect.is_between_samples(values, &model, step)
+            effect.is_of_record()
+                || effect.is_between_samples(values, &model, step)
+                || self.is_within_levels(fit, place)
+        })
+    }
+
+    /// Whether the effect at a place of a fit is no more than what the levels of a noisy input are not known to.
+    fn is_within_levels(&self, fit: &Fit, place: usize) -> bool {
+        let error = self.levelled.as_ref().map(|found| found.level_error);
+        let sizes = self.sizes(fit, place).zip(error);
+        sizes.is_some_and(|(mut sizes, error)| {
+            sizes.all(|size| size < CHANCE * error / self.scales.of(Dimension::Force))
         })
     }
 
     /// Whether the effect at a place of a fit is more than a trifle of the input: where a motion is unstable, its least
     /// disturbance grows until it is seen, and an asymmetry of the last digits of a record seems to explain it.
     pub fn is_sizeable(&self, fit: &Fit, place: usize) -> bool {
+        // Friction may be all in what it takes to start.
+        let sizes = self.sizes(fit, place);
+        sizes.is_none_or(|mut sizes| sizes.any(|size| size >= TRIFLE))
+    }
+
+    /// The forces of an effect and its shares of the input, as shares of what is typical; `None` where it is first of
+    /// all something else: it may bring a force that is 0, such as the friction of a load.
+    fn sizes(&self, fit: &Fit, place: usize) -> Option<impl Iterator<Item = f64>> {
         let structure = &fit.structure;
-        let Some(newest) = structure.effects.get(place) else {
-            return true;
-        };
-        let specs = newest.parameters();
+        let specs = structure.effects.get(place)?.parameters();
         let is_force = |spec: &ParameterSpec| {
             spec.dimension == Dimension::Force
                 || (spec.dimension, spec.range) == (Dimension::Ratio, Range::Fraction)
         };
-        // Another one may bring a force that is 0, such as the friction of a load.
-        if !specs.first().is_some_and(is_force) {
-            return true;
-        }
-        let mut sized = specs.iter().zip(&fit.values[structure.range(place)]);
-        // Friction may be all in what it takes to start.
-        sized.any(|(spec, size)| {
-            is_force(spec) && size.abs() >= TRIFLE * self.scales.of(spec.dimension)
-        })
+        specs.first().filter(|spec| is_force(spec))?;
+        let values = &fit.values[structure.range(place)];
+        let forces = specs
+            .iter()
+            .zip(values)
+            .filter(move |(spec, _)| is_force(spec));
+        Some(forces.map(|(spec, size)| size.abs() / self.scales.of(spec.dimension)))
     }
 
     /// What a fit of the whole record leaves.
@@ -502,7 +513,9 @@ impl Session {
     fn is_left_by_random_forces(&self, scored: &Scored) -> bool {
         let (data, fit) = (self.whole(), &scored.fit);
         let error = scored.score.error;
+        let levels = self.levelled.as_ref().map_or(0.0, |l| l.unknown);
+        let by_input = left_by_input(data, levels, &fit.structure.model(&fit.values));
         let probe = || self.probe_of(data, fit);
-        error < MOST_PUSHED && is_left_by_random_forces(data, &fit.motion, error, probe)
+        is_left_by_random_forces(data, &fit.motion, error, by_input, probe)
     }
 }

@@ -207,7 +207,8 @@ mod tests {
             let _ = writeln!(text, "{},{input},{}", k as f64 * step, speed(k) + noise);
         }
         let measurement = import_csv("start", text.as_bytes(), None).unwrap();
-        let session = Session::new(&measurement, &UserModel::blank(measurement.kind)).unwrap();
+        let (session, _) =
+            Session::screened(&measurement, &UserModel::blank(measurement.kind)).unwrap();
         let bends = bends(&session.data);
         let of = |held: bool| -> f64 {
             let blocks = session.data.blocks.iter().zip(&bends);

@@ -17,8 +17,9 @@ use super::select::{delta_bic, is_all_that_counters_show, is_noise, outweighs};
 use super::session::{Rest, Scored, Session, small_share};
 use super::verdict::{
     Class, PartOfTheWay, Refused, add_both_ways, add_dry_friction, add_experiments, add_hint,
-    add_idle, add_input_check, add_integrating, add_one_push, add_other_experiment, add_overruled,
-    add_part_of_the_way, add_relay_loop, add_rest, add_wander, verdict,
+    add_idle, add_input_check, add_input_noise, add_integrating, add_one_push,
+    add_other_experiment, add_overruled, add_part_of_the_way, add_relay_loop, add_rest, add_wander,
+    verdict,
 };
 use crate::diagnosis::{
     Candidate, Contradiction, Finding, Limits, NextExperiment, Parameter, Step, StepReport, Verdict,
@@ -178,6 +179,9 @@ impl Tell {
         let first = session.first(told.whole).error;
         let (rest, score) = (told.rest, &told.whole.score);
         add_rest(&mut verdict, rest, score, first, told.findings);
+        if let Some(found) = &session.levelled {
+            add_input_noise(&mut verdict, found.noise, &session.input_unit);
+        }
         if session.data.wander > 0.0 {
             add_wander(&mut verdict);
         }

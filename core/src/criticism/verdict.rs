@@ -176,11 +176,11 @@ pub(super) fn add_rest(
             verdict.text.restate(if nothing {
                 msg!(
                     "Nothing is missing: what the model leaves is noise and the effect of small random forces, such \
-                     as those of a controller that is faster than the record: {} times the noise.", fixed(error, 2))
+                     as noise of the measured input or a controller that is faster than the record: {} times the noise.", fixed(error, 2))
             } else {
                 msg!(
-                    "With that, what is left is noise and the effect of small random forces, such as those of a \
-                     controller that is faster than the record: {} times the noise.", fixed(error, 2))
+                    "With that, what is left is noise and the effect of small random forces, such as noise of \
+                     the measured input or a controller that is faster than the record: {} times the noise.", fixed(error, 2))
             });
             verdict.text.add(
                 "That effect wanders like a random walk, and depends neither on the motion nor on the input.",
@@ -215,6 +215,14 @@ pub(super) fn add_rest(
     if let Some(strongest) = findings.first() {
         verdict.text.add(&strongest.text);
     }
+}
+
+/// Says that the noise of the input was taken off.
+pub(super) fn add_input_noise(verdict: &mut Verdict, noise: f64, unit: &str) {
+    verdict.text.add(msg!(
+        "The input was measured with a noise of {}, which does not act: its readings were averaged.",
+        in_unit(digits(noise, 2), unit)
+    ));
 }
 
 /// Says by what models were compared where the surroundings of a process wander.

@@ -1,6 +1,6 @@
 //! Logs of names with values, one record a line: `t: 0.01 u: 3 y: 2.5`, also `t=0.01, u=3 V`.
 
-use super::cell::Mark;
+use super::cell::{Mark, with_unit};
 use super::clock::Clock;
 use super::series::{Builder, Series};
 use super::text::decoded;
@@ -92,7 +92,8 @@ fn char_len(text: &str, at: usize) -> usize {
 
 /// A value and the unit at its end.
 fn divided(word: &str) -> (&str, &str) {
-    if Mark::default().value(word, &mut Clock::default()).is_some() {
+    let bare = with_unit(word).is_none();
+    if bare && Mark::default().value(word, &mut Clock::default()).is_some() {
         return (word, "");
     }
     // The longest begin that is a number.

@@ -8,6 +8,7 @@ use super::weak::{Seen, Weak};
 use super::written::Written;
 use crate::crew::Crew;
 use crate::criticism::explain::{Trial, begun, with_one};
+use crate::criticism::input_noise::prepared;
 use crate::criticism::next_experiment::{Design, Hypothesis, TRYING};
 use crate::criticism::screen::{Screened, Signals};
 use crate::criticism::session::{Rest, Session};
@@ -58,7 +59,7 @@ impl DiscoveryJob {
         effects: &[EffectId],
         model: &UserModel,
     ) -> Result<Self, CriticismError> {
-        let (session, screened) = Session::screened(measurement, model)?;
+        let (session, screened) = prepared(measurement, model)?;
         let held = session.chosen(model, effects)?;
         let mut signals = Signals::new(measurement);
         // Position without noise, where samples are even.

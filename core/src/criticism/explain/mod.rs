@@ -285,7 +285,7 @@ impl Explain {
             }
             Stage::TakeOut => self.swap(session, screened),
             Stage::Swap => self.judge_swaps(session),
-            Stage::Path => self.stage = Stage::Done,
+            Stage::Path => self.judge_path(session),
             Stage::Done => {}
         }
     }

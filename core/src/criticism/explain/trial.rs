@@ -1,7 +1,8 @@
 //! A model fitted to either half of the blocks of a record.
 
 use super::tuning::{OTHER_HALF, SAME_BODY};
-use crate::criticism::fit::Fit;
+use crate::criticism::data::Data;
+use crate::criticism::fit::{Fit, residuals};
 use crate::criticism::score::score;
 use crate::criticism::session::{Scored, Session, TELLING};
 use crate::criticism::structure::Structure;
@@ -102,6 +103,16 @@ impl Trial {
         } else {
             f64::INFINITY
         }
+    }
+
+    /// What is left of the outputs of these data, in their units: the geometric mean of their root mean squares.
+    pub fn left_of_outputs(&self, data: &Data) -> f64 {
+        let all = residuals(data, &self.scored.fit.motion);
+        let logarithms = all.iter().zip(&data.outputs).map(|(left, output)| {
+            let squares: f64 = left.iter().filter(|r| r.is_finite()).map(|r| r * r).sum();
+            0.5 * libm::log(squares / left.len().max(1) as f64) + libm::log(output.noise)
+        });
+        libm::exp(logarithms.sum::<f64>() / all.len().max(1) as f64)
     }
 
     /// Number of values that its effects say something with: how a dry contact builds up its force is seen of few.

@@ -333,7 +333,8 @@ mod tests {
             v = rest + (v - rest) * libm::exp(-damping * STEP / inertia);
         }
         let measurement = import_csv("step", csv.as_bytes(), None).unwrap();
-        let session = Session::new(&measurement, &UserModel::blank(measurement.kind)).unwrap();
+        let (session, _) =
+            Session::screened(&measurement, &UserModel::blank(measurement.kind)).unwrap();
         let (data, scales) = (&session.data, &session.scales);
         let structure = Structure::new(data.baseline, Vec::new(), session.knowledge.clone());
         let starts = data.guessed_starts();

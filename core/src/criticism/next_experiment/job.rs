@@ -3,7 +3,7 @@
 use super::TRYING;
 use super::bench::Hypothesis;
 use super::design::Design;
-use crate::criticism::session::Session;
+use crate::criticism::input_noise::prepared;
 use crate::diagnosis::{CriticismError, FittedModel, Limits, NextExperiment};
 use crate::measurement::Measurement;
 use crate::progress::Progress;
@@ -25,7 +25,7 @@ impl ExperimentJob {
         limits: Limits,
         today: f64,
     ) -> Result<Self, CriticismError> {
-        let session = Session::new(measurement, model)?;
+        let (session, _) = prepared(measurement, model)?;
         let models = models
             .iter()
             .map(|said| Hypothesis::of(&session, said))

@@ -10,7 +10,7 @@ use super::tuning::{
     CHANCE, GROUPS, MIN_GROUP, NORMAL_QUANTILE, ORDERS, QUANTILE, QUANTISED, QUIET, REPEATED,
     STATE_ORDER, STATES, UNLIKE,
 };
-use crate::criticism::record::{fresh, lattice, resolution};
+use crate::criticism::record::{ARITHMETIC, fresh, lattice, resolution};
 use crate::order::quantile;
 use crate::random::dither;
 
@@ -69,7 +69,7 @@ fn noise_at(places: &[usize], values: &[f64], input: &[f64]) -> Noise {
         .collect();
     let uniform = quantum * quantum / 12.0;
     // Counting, print and arithmetic leave at least this.
-    let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * 1e-9;
+    let rounding = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())) * ARITHMETIC;
     let printed = resolution(values);
     let floor = uniform
         .max(printed * printed / 12.0)

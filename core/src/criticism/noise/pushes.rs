@@ -30,17 +30,33 @@ const POSITION_POWERS: (f64, f64) = (1.8, 3.5);
 /// Share of what is left beyond the noise that may be foretold.
 const FORETOLD: f64 = 0.3;
 
-/// Whether small random forces leave what a model of a drive with this `error` (in noise units) leaves; `probe` gives
-/// the force that it leaves unexplained.
+/// Error up to which they may be what is left where the record does not tell their size.
+const MOST_PUSHED: f64 = 2.5;
+
+/// Shares of what is expected of the input that are as much: its noise is known to a third where it is smooth.
+const AS_BY_INPUT: std::ops::RangeInclusive<f64> = 0.5..=1.5;
+
+/// Whether small random forces leave what a model of a drive with this `error` (in noise units) leaves: as much as what
+/// is not known of the input does (`by_input`, likewise), or up to a few times the noise, in the way in which they do;
+/// `probe` gives the force that it leaves unexplained.
 pub(in crate::criticism) fn is_left_by_random_forces(
     data: &Data,
     motion: &Motion,
     error: f64,
+    by_input: f64,
     probe: impl FnOnce() -> Probe,
 ) -> bool {
     if data.kind != Kind::Drive || data.used() != data.len() {
         return false;
     }
+    let beyond = (error * error - 1.0).max(0.0).sqrt();
+    let expected = AS_BY_INPUT.contains(&(beyond / by_input.max(f64::MIN_POSITIVE)));
+    (expected || error < MOST_PUSHED && grows_by_chance(data, motion))
+        && !is_foretold(data, error, probe().halves())
+}
+
+/// Whether what is left grows in the windows as random forces make it grow.
+fn grows_by_chance(data: &Data, motion: &Motion) -> bool {
     let residuals = residuals(data, motion);
     let walks: Vec<Option<bool>> = data
         .outputs
@@ -51,21 +67,24 @@ pub(in crate::criticism) fn is_left_by_random_forces(
     // A position alone hides in its starting states what tells a walk from a force.
     let mut shown = data.outputs.iter().zip(&walks);
     let seen = shown.any(|(output, walks)| output.is_velocity && *walks == Some(true));
-    seen && !walks.contains(&Some(false)) && {
-        let [shown, others] = probe().halves();
-        let axes = [
-            &data.time,
-            &data.velocity_estimate(),
-            &data.position_estimate(),
-            &data.input,
-        ];
-        let beyond = (1.0 - 1.0 / (error * error)).max(f64::MIN_POSITIVE);
-        let told = |axis: &&Vec<f64>| {
-            let told = shown.foretells(&others, axis);
-            told.is_none_or(|share| share > FORETOLD * beyond)
-        };
-        !axes.iter().any(told)
-    }
+    seen && !walks.contains(&Some(false))
+}
+
+/// Whether what one half of the windows shows of the unexplained force, over the motion or the input, foretells the
+/// other half.
+fn is_foretold(data: &Data, error: f64, [shown, others]: [Probe; 2]) -> bool {
+    let axes = [
+        &data.time,
+        &data.velocity_estimate(),
+        &data.position_estimate(),
+        &data.input,
+    ];
+    let beyond = (1.0 - 1.0 / (error * error)).max(f64::MIN_POSITIVE);
+    let told = |axis: &&Vec<f64>| {
+        let told = shown.foretells(&others, axis);
+        told.is_none_or(|share| share > FORETOLD * beyond)
+    };
+    axes.iter().any(told)
 }
 
 /// Whether a residual grows in the windows as a random walk does; `None` where it is not seen to grow.

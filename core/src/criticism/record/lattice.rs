@@ -7,8 +7,8 @@
 //! Hunting quanta).
 
 use super::tuning::{
-    BEHIND_PRINT, FAR_APART, FEW_STEPS, JITTERS, MANY_STEPS, MOST_COUNTS, MOST_DIGITS, MOST_UNITS,
-    NEAR_PRINT, NEAR_SHARE, PRINTED, QUANTUM_SAMPLES, WHOLE, WHOLE_SHARE,
+    ARITHMETIC, BEHIND_PRINT, FAR_APART, FEW_STEPS, JITTERS, MANY_STEPS, MOST_COUNTS, MOST_DIGITS,
+    MOST_UNITS, NEAR_PRINT, NEAR_SHARE, PRINTED, QUANTUM_SAMPLES, WHOLE, WHOLE_SHARE,
 };
 
 /// Unit of the last digit to which the values were printed; 0 where they are no decimal numbers.
@@ -33,7 +33,8 @@ pub(in crate::criticism) fn lattice(values: &[f64]) -> f64 {
     let stride = values.len().div_ceil(QUANTUM_SAMPLES).max(1);
     let mut sorted: Vec<f64> = values.iter().step_by(stride).copied().collect();
     sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
+    let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    sorted.dedup_by(|next, kept| *next - *kept <= ARITHMETIC * largest);
     let printed = resolution(values);
     let behind_jitter = points_behind_jitter(&sorted);
     let behind_jitter = behind_jitter.map_or(0.0, |(points, jitter)| {

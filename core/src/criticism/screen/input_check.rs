@@ -23,22 +23,9 @@ pub(super) fn left(bench: &Bench, tried: &[Tried]) -> f64 {
     best.map_or(1.0, |loss| (loss / motion.max(f64::MIN_POSITIVE)).sqrt())
 }
 
-/// What the screen found says of the input.
-pub(super) fn checked(
-    input_name: &str,
-    signals: &Signals,
-    widths: &[Width],
-    bench: &Bench,
-    tried: &[Tried],
-) -> InputCheck {
-    let say = |verdict, text: Message| InputCheck {
-        verdict,
-        text,
-        plant_told: verdict == InputVerdict::Ok,
-    };
-    let left = left(bench, tried);
-    let explained = !tried.is_empty() && left < UNEXPLAINED;
-    let logged = Logged {
+/// The controller that made the input, if one did.
+pub(super) fn made_by(signals: &Signals) -> Option<Controller> {
+    controller(&Logged {
         kind: signals.kind,
         step: signals.step,
         begins: &signals.begins,
@@ -48,15 +35,33 @@ pub(super) fn checked(
             .as_ref()
             .map_or(&signals.speed, |v| &v.values),
         place: &signals.place,
+    })
+}
+
+/// What the screen found says of the input, if a controller `made` it of that too.
+pub(super) fn checked(
+    input_name: &str,
+    signals: &Signals,
+    widths: &[Width],
+    bench: &Bench,
+    tried: &[Tried],
+    made: Option<&Controller>,
+) -> InputCheck {
+    let say = |verdict, text: Message| InputCheck {
+        verdict,
+        text,
+        plant_told: verdict == InputVerdict::Ok,
     };
-    if let Some(made) = controller(&logged) {
+    let left = left(bench, tried);
+    let explained = !tried.is_empty() && left < UNEXPLAINED;
+    if let Some(made) = made {
         let plant = smallest(tried, bench.motion())
             .first()
-            .is_some_and(|t| bench.settles(&t.members));
+            .is_some_and(|t| bench.is_plant(&t.members, made));
         let plant_told = explained && plant;
         return InputCheck {
             plant_told,
-            ..say(InputVerdict::ClosedLoop, closed(&made, plant_told))
+            ..say(InputVerdict::ClosedLoop, closed(made, plant_told))
         };
     }
     if explained {
@@ -192,6 +197,7 @@ fn closed(made: &Controller, explained: bool) -> Message {
         law,
         kind,
         explained: share,
+        ..
     } = made;
     let plant = if explained {
         "What is said about the plant comes from how the output moves under this input, which is valid in a closed \

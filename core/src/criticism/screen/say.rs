@@ -44,10 +44,12 @@ pub(super) fn screening(
 ) -> Screening {
     let motion = bench.motion();
     let share = |loss: f64| (loss / motion.max(f64::MIN_POSITIVE)).sqrt();
-    let input_check = input_check::checked(&measurement.input.name, signals, widths, bench, tried);
+    let made = input_check::made_by(signals);
+    let name = &measurement.input.name;
+    let input_check = input_check::checked(name, signals, widths, bench, tried, made.as_ref());
     let mut class = smallest(tried, motion);
-    if input_check.verdict == InputVerdict::ClosedLoop {
-        class.retain(|t| bench.settles(&t.members));
+    if let Some(controller) = &made {
+        class.retain(|t| bench.is_plant(&t.members, controller));
     }
     let subsets: Vec<Subset> = class
         .iter()

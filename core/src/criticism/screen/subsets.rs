@@ -3,6 +3,7 @@
 use super::gram::{Gram, Reduced};
 use super::model::{Choice, Fit, Shaped, elements, unit, values};
 use super::tuning::{BLOCKS, GROWTH, MOST_ATOMS, PRACTICAL, SAME, TOLD, WORSE};
+use crate::controller::Controller;
 use crate::effect::Extent;
 use crate::measurement::Kind;
 
@@ -136,11 +137,15 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Whether a process settles by itself, told by its own standard errors: in a closed loop what is left may as well
-    /// be the controller turned round.
-    pub fn settles(&self, members: &[(usize, usize)]) -> bool {
+    /// Whether these are the plant and not the controller turned round, where one closed the loop: it settles by itself,
+    /// told by its own standard errors, or what the set point does to its input acts against the controller.
+    pub fn is_plant(&self, members: &[(usize, usize)], made: &Controller) -> bool {
         let fit = Fit::new(self.gram, &self.elements(members));
-        self.kind == Kind::Drive || fit.is_some_and(|fit| -fit.w[1] > TOLD * fit.error(1))
+        let plant = |fit: Fit| {
+            let settles = -fit.w[1] > TOLD * fit.error(1);
+            settles || made.is_led && self.told(&fit) && fit.w[0] * made.gain < 0.0
+        };
+        self.kind == Kind::Drive || fit.is_some_and(plant)
     }
 
     pub fn subset(&self, members: &[(usize, usize)]) -> Vec<(&'a Choice, &'a Shaped)> {

