@@ -27,7 +27,6 @@ mod purpose_line;
 mod recent;
 mod save;
 mod shortcuts;
-mod symbols;
 mod theme;
 mod widgets;
 mod zoom;

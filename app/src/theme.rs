@@ -3,7 +3,6 @@
 use egui::{Color32, FontId};
 
 use crate::language::{Said, tr, tr_number};
-use crate::symbols;
 
 /// What was measured.
 pub const MEASURED: Color32 = Color32::from_rgb(0x56, 0xB4, 0xE9);
@@ -274,19 +273,20 @@ pub fn answer_size(ctx: &egui::Context) -> f32 {
 
 /// The large answer of a page.
 pub fn answer_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
-    let color = ui.visuals().strong_text_color();
-    tell(&answer_label(ui, &tr(text), color));
-}
-
-fn answer_label(ui: &mut egui::Ui, text: &str, color: Color32) -> egui::Response {
-    let font = FontId::proportional(answer_size(ui.ctx()));
-    ui.add(egui::Label::new(symbols::job(text, font, color)).wrap())
+    let text = egui::RichText::new(tr(text))
+        .size(answer_size(ui.ctx()))
+        .strong();
+    let answer = ui.add(egui::Label::new(text).wrap());
+    tell(&answer);
 }
 
 /// The same while the next one is computed for what is set now: it is fainter, and says so.
 pub fn answer_of_before_ui<'a>(ui: &mut egui::Ui, text: impl Into<Said<'a>>) {
     let color = ui.visuals().weak_text_color();
-    let answer = answer_label(ui, &tr(text), color);
+    let text = egui::RichText::new(tr(text))
+        .size(answer_size(ui.ctx()))
+        .color(color);
+    let answer = ui.add(egui::Label::new(text).wrap());
     tell(&answer);
     // Beside the next line, so that nothing moves while a slider is dragged.
     let at = egui::pos2(ui.max_rect().right(), answer.rect.bottom());
@@ -302,14 +302,6 @@ pub fn tell(text: &egui::Response) {
     text.ctx.accesskit_node_builder(text.id, |node| {
         node.set_live(egui::accesskit::Live::Polite);
     });
-}
-
-/// How much the ground of words hides of the curves under it.
-const GROUND: f32 = 0.8;
-
-/// The ground of words that stand over curves.
-pub fn behind_words(visuals: &egui::Visuals) -> Color32 {
-    visuals.extreme_bg_color.gamma_multiply(GROUND)
 }
 
 /// A curve's colour as text, which needs more contrast: lighter on a dark ground, darker on a light one.

@@ -53,28 +53,6 @@ pub fn parse(text: &str) -> Vec<Part> {
     group(&chars, &mut at, None)
 }
 
-/// The symbols with an index in a sentence, and the words between them as they are.
-pub fn indexed(text: &str) -> Vec<Part> {
-    let between = |c: char| !(c.is_alphanumeric() || c == '_');
-    let mut parts = Vec::new();
-    let mut words = String::new();
-    for run in text.split_inclusive(between) {
-        let (word, after) = run.split_at(run.find(between).unwrap_or(run.len()));
-        match symbol(word) {
-            Some(Part::Symbol { index, .. }) if index.is_empty() => words.push_str(word),
-            Some(symbol) => {
-                parts.push(Part::Plain(std::mem::take(&mut words)));
-                parts.push(symbol);
-            }
-            None => words.push_str(word),
-        }
-        words.push_str(after);
-    }
-    parts.push(Part::Plain(words));
-    parts.retain(|part| *part != Part::Plain(String::new()));
-    parts
-}
-
 /// A piece of a sentence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Piece<'t> {
@@ -295,23 +273,6 @@ mod tests {
             ]
         );
         assert_eq!(pieces("none", &[""]), [Piece::Words("none")]);
-    }
-
-    #[test]
-    fn symbols_in_a_sentence_have_their_index() {
-        for (text, typeset) in [
-            ("x1 - model [µrad]", "x_1 - model [µrad]"),
-            ("Ms is 1.34; Ti = 2.2 s", "M_s is 1.34; T_i = 2.2 s"),
-            ("-1/Ku by the relay", "-1/K_u by the relay"),
-            (
-                "output y, drive-02 and drive_02, 4k",
-                "output y, drive-02 and drive_02, 4k",
-            ),
-            ("gap of x1", "gap of x_1"),
-            ("", ""),
-        ] {
-            assert_eq!(read(&indexed(text)), typeset);
-        }
     }
 
     #[test]

@@ -438,29 +438,6 @@ impl Map {
         silent.count() as f64 / self.known.max(1) as f64
     }
 
-    /// Whether a cell with the largest value of a quantity stands beside a loop that does not oscillate: then loops
-    /// between the two have larger values still.
-    pub fn grows_to_silence(&self, quantity: Quantity) -> bool {
-        let value = |index: usize| quantity.value(self.cells[index].as_ref()?);
-        let silent = |index: usize| {
-            let cell = self.cells[index];
-            cell.is_some_and(|outcome| outcome.exact.is_none())
-        };
-        let largest = (0..self.cells.len())
-            .filter_map(|i| Some((i, value(i)?)))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        largest.is_some_and(|(index, _)| {
-            let (x, y) = (index % self.size, index / self.size);
-            let columns = x.saturating_sub(1)..(x + 2).min(self.size);
-            let mut rows = y.saturating_sub(1)..(y + 2).min(self.size);
-            rows.any(|row| {
-                columns
-                    .clone()
-                    .any(|column| silent(row * self.size + column))
-            })
-        })
-    }
-
     /// A cell, or the coarser one that stands for it until it is computed.
     pub fn at(&self, place: [usize; 2]) -> Option<&Outcome> {
         let mut step = 1;

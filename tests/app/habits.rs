@@ -177,7 +177,6 @@ fn on_a_phone_one_plot_stays_in_view_while_the_sliders_scroll() {
         "v1;tune;tune.step=loops",
         "v1;tune;tune.measured.from=record;tune.measured.file=process-02",
         "v1;tune;tune.measured.from=numbers",
-        "v1;compare;compare.file=drive-02",
     ] {
         let mut harness = app("start", PHONE);
         show(&mut harness, place);

@@ -9,7 +9,8 @@ use egui_plot::{
 };
 
 use super::chart_axes::{
-    LABELS, Step, beside, grid, grid_x, named, plain, power_label, powers, scale, shown_from, title,
+    LABELS, beside, grid, grid_x, label, named, plain, power_label, powers, scale, shown_from,
+    title,
 };
 pub use super::chart_axes::{round_step, span_decades};
 pub use super::chart_caption::{Key, Shape, caption_ui};
@@ -21,7 +22,6 @@ use super::chart_reading::{Reader, reading};
 use super::chart_zoom::Zoomed;
 use crate::export::Table;
 use crate::language::tr;
-use crate::symbols;
 use crate::theme;
 pub use hysteron_core::curve::{envelope, extremes, sparse};
 use hysteron_core::message::Message;
@@ -74,7 +74,8 @@ impl<'a> Chart<'a> {
         let plot = Plot::new(salt)
             .height(height)
             .allow_scroll(false)
-            .grid_fade(GRID_FADE);
+            .grid_fade(GRID_FADE)
+            .y_grid_spacer(uniform_grid_spacer(|input| grid(&input, LABELS[1])));
         Self {
             plot,
             salt,
@@ -101,7 +102,7 @@ impl<'a> Chart<'a> {
     #[must_use]
     pub fn decades_up(mut self) -> Self {
         self.decades[1] = true;
-        self
+        self.with(|plot| plot.y_grid_spacer(|input| powers(&input)))
     }
 
     /// With more of what a plot can do.
@@ -321,31 +322,24 @@ fn with_axes<'a>(
     let font = egui::TextStyle::Body.resolve(ui.style());
     let wide = |text: &str| theme::text_width(ui, text.to_owned(), font.clone());
     let y = AxisHints::new_y()
-        .label(symbols::body(ui, &beside(&y, height, wide)))
+        .label(beside(&y, height, wide))
         .min_thickness(width)
         .label_spacing(shown_from(LABELS[1][1]));
-    let (y, plot) = if decades[1] {
-        let y = y.formatter(|mark, _| power_label(mark.value));
-        (y, plot.y_grid_spacer(|input| powers(&input)))
+    let y = if decades[1] {
+        y.formatter(|mark, _| power_label(mark.value))
     } else {
-        let (step, labelled) = (Step::new(), LABELS[1]);
-        let found = step.clone();
-        let y = y.formatter(move |mark, _| found.label(mark, up));
-        let lines = move |input| step.of(&input, grid(&input, labelled), labelled[1]);
-        (y, plot.y_grid_spacer(uniform_grid_spacer(lines)))
+        y.formatter(move |mark, _| label(mark, up))
     };
     let x = AxisHints::new_x()
-        .label(symbols::body(ui, &x))
+        .label(x)
         .label_spacing(shown_from(LABELS[0][1]));
     let (x, plot) = if decades[0] {
         let x = x.formatter(|mark, _| power_label(mark.value));
         (x, plot.x_grid_spacer(|input| powers(&input)))
     } else {
-        let (step, apart) = (Step::new(), LABELS[0][1]);
-        let found = step.clone();
-        let x = x.formatter(move |mark, _| found.label(mark, across));
-        let lines = move |input| step.of(&input, grid_x(&input, across), apart);
-        (x, plot.x_grid_spacer(uniform_grid_spacer(lines)))
+        let x = x.formatter(move |mark, _| label(mark, across));
+        let lines = uniform_grid_spacer(move |input| grid_x(&input, across));
+        (x, plot.x_grid_spacer(lines))
     };
     plot.custom_x_axes(vec![x]).custom_y_axes(vec![y])
 }

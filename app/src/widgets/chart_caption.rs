@@ -1,7 +1,6 @@
 //! What stands above a plot: the names of its curves.
 
 use crate::language::tr;
-use crate::symbols;
 use crate::theme;
 use hysteron_core::message::Message;
 
@@ -34,10 +33,14 @@ pub fn caption_ui<N: Clone + Into<Message>>(
             ui.strong(tr(title));
         }
         for key in curves {
-            let text = symbols::body(ui, &tr(key.0.clone().into()));
+            let text = egui::RichText::new(tr(key.0.clone().into()));
             // A sample never stands at the end of a line without its name.
-            let name = ui.painter().layout_job(text.clone());
-            let width = SAMPLE.x + ui.spacing().item_spacing.x + name.size().x;
+            let job = ui.painter().layout_no_wrap(
+                text.text().to_owned(),
+                egui::TextStyle::Body.resolve(ui.style()),
+                egui::Color32::PLACEHOLDER,
+            );
+            let width = SAMPLE.x + ui.spacing().item_spacing.x + job.size().x;
             if width > ui.available_size_before_wrap().x && width < ui.max_rect().width() {
                 ui.end_row();
             }

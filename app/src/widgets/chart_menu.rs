@@ -7,11 +7,12 @@ use hysteron_core::msg;
 
 use crate::export::Table;
 use crate::language::tr;
-use crate::theme;
 
-/// Size of the ground of the button's dots and how far that is below the middle of it, points.
+/// Size of the ground of the button's dots and how far that is below the middle of it, points; and how much it covers of
+/// what lies beneath.
 const DOTS: Vec2 = vec2(22.0, 12.0);
 const DOTS_BELOW: Vec2 = vec2(0.0, 4.0);
+const GROUND: f32 = 0.8;
 
 /// Least side of the button of a menu, points.
 const BUTTON: f32 = 24.0;
@@ -110,7 +111,7 @@ pub fn ui(
     let side = ui.spacing().interact_size.y.max(BUTTON);
     let corner = Rect::from_min_max(inner.max - vec2(side, side), inner.max);
     // On a ground of its own: three dots on a curve would be read as data.
-    let ground = theme::behind_words(ui.visuals());
+    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
     let dots = Rect::from_center_size(corner.center() + DOTS_BELOW, DOTS);
     ui.painter().rect_filled(dots, 4.0, ground);
     let mut child = ui.new_child(UiBuilder::new().id_salt(plot).max_rect(corner));

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use egui::{Color32, FontId, Galley, Painter, Pos2, Rect, Sense, Ui, Vec2, vec2};
 use hysteron_core::equation::{Part, Piece, parse, pieces};
 
-use crate::symbols::INDEX;
-
-/// By how much an index and an exponent are moved, and the size of the parts of a fraction, in sizes of the letter.
+/// Size of an index and of an exponent, by how much they are moved, and the parts of a fraction, in sizes of the
+/// letter.
+const SMALL: f32 = 0.72;
 const LOWERED: f32 = 0.22;
 const RAISED: f32 = 0.42;
 const FRACTION: f32 = 0.86;
@@ -146,7 +146,7 @@ impl Laid {
                 name,
             } => {
                 let mut laid = Self::text(painter, letter, size, color, true);
-                let mut below = Self::text(painter, index, INDEX * size, color, false);
+                let mut below = Self::text(painter, index, SMALL * size, color, false);
                 below.shift(vec2(0.0, LOWERED * size));
                 laid.append(below);
                 let place = Rect::from_min_max(
@@ -157,7 +157,7 @@ impl Laid {
                 laid
             }
             Part::Raised(parts) => {
-                let mut raised = Self::row(painter, parts, INDEX * size, color);
+                let mut raised = Self::row(painter, parts, SMALL * size, color);
                 raised.shift(vec2(0.0, -RAISED * size));
                 raised
             }

@@ -1,12 +1,14 @@
 //! Positions over time, phase portrait and backlash map.
 
-use egui::{Color32, Id, Ui};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotResponse, Points, Polygon, VLine};
+use egui::{Align2, Color32, Id, Ui};
+use egui_plot::{
+    Line, LineStyle, MarkerShape, PlotPoint, PlotResponse, Points, Polygon, Text, VLine,
+};
 
 use super::scene::{Now, Scene};
 use crate::language::tr;
 use crate::theme;
-use crate::widgets::chart::{Shape, caption_ui, curve, dot, still};
+use crate::widgets::chart::{Shape, caption_ui, curve, dot, extremes, still};
 use crate::widgets::chart_cursor::{mark_ui, pointed};
 
 /// Periods of the relay that the phase portrait shows before the present one.
@@ -109,6 +111,7 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
         curves.push(("closed form in the gap", theme::INPUT, Shape::Dashes));
     }
     caption_ui(ui, "Phase portrait", &curves);
+    let color = ui.visuals().text_color();
     let shown = still(
         "phase of the motor",
         "motor position x1 [mrad]",
@@ -130,16 +133,57 @@ pub fn phase_ui(ui: &mut Ui, scene: &Scene, clock: f64, height: f32) {
                     .width(2.0),
             );
             plot.points(
-                Points::new(tr("switching and turning points"), orbit.corners.clone())
+                Points::new(tr("characteristic points"), orbit.corners.clone())
                     .color(theme::INPUT)
                     .radius(4.0),
             );
+            for (place, label) in labels(&orbit.corners) {
+                plot.text(
+                    Text::new("characteristic points", place, label)
+                        .anchor(Align2::CENTER_CENTER)
+                        .color(color),
+                );
+            }
         }
         if let Some(now) = scene.now(clock).filter(|_| pointed.is_none()) {
             plot.points(dot("now", [now.x1, now.v1]));
         }
     });
     moment_ui(ui, scene, &shown, |now| Some([now.x1, now.v1]));
+}
+
+/// Distance of a number from its point, as a share of the orbit's size.
+const LABEL_DISTANCE: f64 = 0.14;
+
+/// Numbers of the characteristic points, outside of the orbit; one for points that coincide.
+fn labels(corners: &[[f64; 2]]) -> Vec<(PlotPoint, String)> {
+    let count = corners.len().max(1) as f64;
+    let range = |k: usize| {
+        let (low, high) = extremes(corners.iter().map(|c| c[k]));
+        high - low
+    };
+    let size = [range(0), range(1)];
+    let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / count);
+    let mut found: Vec<([f64; 2], String)> = Vec::new();
+    for (i, corner) in corners.iter().enumerate() {
+        let number = (i + 1).to_string();
+        match found.last_mut() {
+            Some((at, text)) if at == corner => {
+                text.push_str(", ");
+                text.push_str(&number);
+            }
+            _ => found.push((*corner, number)),
+        }
+    }
+    found
+        .into_iter()
+        .map(|(at, text)| {
+            let out = [0, 1].map(|k| (at[k] - middle[k]) / size[k].max(f64::MIN_POSITIVE));
+            let length = out[0].hypot(out[1]).max(f64::MIN_POSITIVE);
+            let place = [0, 1].map(|k| at[k] + LABEL_DISTANCE * size[k] * out[k] / length);
+            (PlotPoint::new(place[0], place[1]), text)
+        })
+        .collect()
 }
 
 /// Load over motor position.

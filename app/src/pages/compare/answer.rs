@@ -1,7 +1,5 @@
 //! The page's answer, where the model fails, and messages, in words.
 
-use std::ops::Range;
-
 use hysteron_core::diagnosis::{DiscoveryEnd, StepReport};
 use hysteron_core::effect::EffectId;
 use hysteron_core::measurement::Kind;
@@ -139,18 +137,11 @@ impl Compare {
         report.suggestion.is_none() && before.is_some_and(|v| v.complete)
     }
 
-    /// Some of what is found of where the model fails, by their places.
-    pub(super) fn findings_ui(
-        &self,
-        ui: &mut egui::Ui,
-        places: Range<usize>,
-        commands: &mut Vec<Command>,
-    ) {
+    pub(super) fn findings_ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Some(report) = self.report() else {
             return;
         };
-        let findings = report.step.findings.iter().enumerate();
-        for (index, finding) in findings.take(places.end).skip(places.start) {
+        for (index, finding) in report.step.findings.iter().enumerate().take(3) {
             let row = ui.selectable_label(self.finding == index, tr(&finding.text));
             if row
                 .on_hover_text(tr("Click to shade it in the plots"))

@@ -59,9 +59,6 @@ pub use state::Compare;
 /// Height of the plots over time in a narrow window, points.
 const NARROW_PLOTS: f32 = 220.0;
 
-/// Findings that are said, at most.
-const FINDINGS: usize = 3;
-
 /// Longest time without a new frame while a job runs.
 const ALIVE: std::time::Duration = std::time::Duration::from_millis(100);
 
@@ -122,28 +119,16 @@ impl Compare {
         } else if self.measurement.is_some() {
             let narrow = ui.available_width() < layout::NARROW;
             if narrow {
-                // The answer and what the model leaves stay in view while a slider below them is turned.
-                let pinned = plots::pinned(self).filter(|_| layout::pins(ui));
-                if let Some(output) = pinned {
-                    egui::Panel::top("compare_answer").show(ui, |ui| {
-                        self.answer_ui(ui);
-                        plots::pinned_ui(self, ui, output, layout::PINNED);
-                    });
-                }
                 egui::CentralPanel::default().show(ui, |ui| {
                     theme::scroll("compare").show(ui, |ui| {
                         // What is seen first, then what could be done: the list of effects is long.
-                        if pinned.is_none() {
-                            self.answer_ui(ui);
-                        }
-                        self.findings_ui(ui, 0..1, &mut commands);
+                        self.answer_ui(ui);
                         self.noise_ui(ui);
                         self.message_ui(ui, &mut commands);
                         side::progress_ui(self, ui, &mut commands);
                         let top = ui.cursor().min;
                         self.looks_ui(ui, targets, &mut commands);
-                        self.evidence_ui(ui, NARROW_PLOTS, pinned, targets, &mut commands);
-                        self.findings_ui(ui, 1..FINDINGS, &mut commands);
+                        self.evidence_ui(ui, NARROW_PLOTS, targets, &mut commands);
                         let asked = commands.len();
                         ui.separator();
                         side::file_ui(self, ui, targets, &mut commands);
@@ -176,14 +161,14 @@ impl Compare {
                     }
                     self.message_ui(ui, &mut commands);
                     theme::scroll("compare").show(ui, |ui| {
-                        // The first of them is the answer's: it is always seen.
-                        let first = if low { 1 } else { FINDINGS };
-                        self.findings_ui(ui, 0..first, &mut commands);
+                        if !low {
+                            self.findings_ui(ui, &mut commands);
+                        }
                         self.looks_ui(ui, targets, &mut commands);
                         let height = ui.available_height();
-                        self.evidence_ui(ui, height, None, targets, &mut commands);
-                        self.findings_ui(ui, first..FINDINGS, &mut commands);
+                        self.evidence_ui(ui, height, targets, &mut commands);
                         if low {
+                            self.findings_ui(ui, &mut commands);
                             self.noise_ui(ui);
                         }
                     });
@@ -240,12 +225,11 @@ impl Compare {
         });
     }
 
-    /// The plots; `height` is for those over time, without what is left of the output that is `pinned` elsewhere.
+    /// The plots; `height` is for those over time.
     fn evidence_ui(
         &self,
         ui: &mut egui::Ui,
         height: f32,
-        pinned: Option<usize>,
         targets: &mut Targets,
         commands: &mut Vec<Command>,
     ) {
@@ -257,7 +241,7 @@ impl Compare {
             self.missing_ui(ui, targets, commands);
         }
         match self.look {
-            Look::Time => plots::ui(self, ui, height, pinned),
+            Look::Time => plots::ui(self, ui, height),
             Look::Places => atlas::ui(self, ui),
             Look::Fingerprint => fingerprint::ui(self, ui, targets, commands),
             Look::Reveal => reveal::ui(self, ui, targets, commands),

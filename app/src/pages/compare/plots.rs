@@ -38,6 +38,9 @@ const BELOW: f32 = 40.0;
 /// Room above and below what is in view, as a share of it.
 const ROOM: f64 = 0.08;
 
+/// How much the ground of words hides of the curves under it.
+const GROUND: f32 = 0.75;
+
 /// What jumps of the residual are.
 const RESTARTED: &str = "In each short window the model starts afresh from an estimated state, so that small errors do \
     not add up: where one begins, the residual (measured minus model) may jump.";
@@ -54,8 +57,7 @@ const SIGNAL: f32 = 0.75;
 /// Height of a plot below which the page scrolls.
 const LEAST_HEIGHT: f32 = 106.0;
 
-/// All plots; what is left of the output that is `pinned` stands elsewhere.
-pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32, pinned: Option<usize>) {
+pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32) {
     let Some(measurement) = &page.measurement else {
         return;
     };
@@ -86,50 +88,16 @@ pub(super) fn ui(page: &Compare, ui: &mut egui::Ui, height: f32, pinned: Option<
             finding,
             size(SIGNAL),
         );
-        if pinned != Some(index) {
-            left_ui(page, ui, index, size(2.0 - SIGNAL));
+        if let Some(modelled) = modelled {
+            let before = page.report_before().filter(|_| page.before);
+            let before = before.and_then(|r| r.replay.channels.get(index));
+            let models = (modelled, before, hand);
+            residual_plot(ui, measurement, output, models, finding, size(2.0 - SIGNAL));
         }
     }
     if report.is_some() && low {
         ui.small(tr(RESTARTED));
     }
-}
-
-/// The output of which what is left can stay in view: that of the finding, or else the first.
-pub(super) fn pinned(page: &Compare) -> Option<usize> {
-    let report = page.report_in(Part::Plots)?;
-    let outputs = &page.measurement.as_ref()?.outputs;
-    let finding = report.step.findings.get(page.finding);
-    let about = finding.and_then(|f| outputs.iter().position(|o| is_about(f, o)));
-    let index = about.unwrap_or(0);
-    report.replay.channels.get(index).map(|_| index)
-}
-
-/// What is left of one output, with its caption.
-pub(super) fn pinned_ui(page: &Compare, ui: &mut egui::Ui, index: usize, height: f32) {
-    caption_ui(ui, "", &residual_curves(page));
-    let size = Size {
-        height: height - CAPTION,
-        labels: AXIS_WIDTH,
-    };
-    left_ui(page, ui, index, size);
-}
-
-/// What the model leaves of one output.
-fn left_ui(page: &Compare, ui: &mut egui::Ui, index: usize, size: Size) {
-    let (Some(measurement), Some(report)) = (&page.measurement, page.report_in(Part::Plots)) else {
-        return;
-    };
-    let output = measurement.outputs.get(index);
-    let Some((output, modelled)) = output.zip(report.replay.channels.get(index)) else {
-        return;
-    };
-    let before = page.report_before().filter(|_| page.before);
-    let before = before.and_then(|r| r.replay.channels.get(index));
-    let hand = page.hand().and_then(|hand| by_hand(hand, index));
-    let finding = report.step.findings.get(page.finding);
-    let models = (modelled, before, hand);
-    residual_plot(ui, measurement, output, models, finding, size);
 }
 
 /// What the values that are set by hand say of an output, and the samples that have it.
@@ -152,21 +120,15 @@ fn curves(page: &Compare, modelled: bool) -> Vec<Key> {
     let mut curves = vec![("measured", theme::MEASURED, Shape::Line)];
     if modelled {
         curves.push(("model", theme::MODEL, Shape::Dashes));
-        curves.extend(residual_curves(page));
+        curves.push(("residual", theme::RESIDUAL, Shape::Line));
+        if page.before && page.report_before().is_some() {
+            curves.push(("the previous step", theme::BEFORE, Shape::Line));
+        }
+        if page.hand().is_some() {
+            curves.push(("by hand", theme::BEFORE, Shape::Line));
+        }
+        curves.push(("noise, ±2σ", theme::NOISE, Shape::Dashes));
     }
-    curves
-}
-
-/// What stands in the plots of what the model leaves.
-fn residual_curves(page: &Compare) -> Vec<Key> {
-    let mut curves = vec![("residual", theme::RESIDUAL, Shape::Line)];
-    if page.before && page.report_before().is_some() {
-        curves.push(("the previous step", theme::BEFORE, Shape::Line));
-    }
-    if page.hand().is_some() {
-        curves.push(("by hand", theme::BEFORE, Shape::Line));
-    }
-    curves.push(("noise, ±2σ", theme::NOISE, Shape::Dashes));
     curves
 }
 
@@ -253,6 +215,10 @@ fn signal_plot(
 ) {
     let label = titled(Message::name(output.title()), &output.unit);
     let model = modelled.map_or(&[][..], |m| m.modelled.as_slice());
+    let ground = ui.visuals().extreme_bg_color.gamma_multiply(GROUND);
+    let alone = measurement.outputs.len() == 1;
+    let marked = finding.filter(|f| alone || is_about(f, output));
+    let words = marked.map_or(0.0, |_| f64::from(WORDS / (size.height - BELOW)));
     let shown = plot(
         measurement,
         finding,
@@ -261,7 +227,13 @@ fn signal_plot(
         size,
     )
     .show(ui, |plot| {
-        fit(plot, &measurement.time, &[&output.values, model], &[], 0.0);
+        fit(
+            plot,
+            &measurement.time,
+            &[&output.values, model],
+            &[],
+            words,
+        );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
         let measured = points(&measurement.time, &output.values, &drawn);
@@ -286,6 +258,7 @@ fn signal_plot(
                     .width(1.5),
             );
         }
+        mark(plot, marked, ground);
         drawn
     });
     draw_more(ui, &measurement.time, &shown);
@@ -311,10 +284,6 @@ fn residual_plot(
         let pairs = output.values.iter().skip(from).zip(modelled);
         pairs.map(|(y, m)| y - m).collect()
     });
-    let ground = theme::behind_words(ui.visuals());
-    let alone = measurement.outputs.len() == 1;
-    let marked = finding.filter(|f| alone || is_about(f, output));
-    let words = marked.map_or(0.0, |_| f64::from(WORDS / (size.height - BELOW)));
     let shown = plot(
         measurement,
         finding,
@@ -337,7 +306,7 @@ fn residual_plot(
             &measurement.time,
             &[&residual, &earlier],
             &others,
-            words,
+            0.0,
         );
         shade(plot, finding);
         let drawn = drawn(plot, &measurement.time);
@@ -365,7 +334,6 @@ fn residual_plot(
             let line = HLine::new(tr("noise, ±2σ"), side * modelled.noise);
             plot.hline(line.color(theme::NOISE).style(LineStyle::dashed_dense()));
         }
-        mark(plot, marked, ground);
         drawn
     });
     draw_more(ui, &measurement.time, &shown);

@@ -1,7 +1,6 @@
 //! Describing function, exact and simulated cycle side by side.
 
 use crate::language::{tr, tr_number};
-use crate::symbols;
 use crate::theme;
 use crate::widgets::chart::significant;
 use hysteron_core::message::{Message, signed};
@@ -37,7 +36,7 @@ pub fn ui<const N: usize>(
         .show(ui, |ui| {
             ui.strong("");
             for title in titles {
-                ui.label(symbols::strong(ui, &tr(title)));
+                ui.strong(tr(title));
             }
             ui.strong(tr("stable"));
             ui.end_row();

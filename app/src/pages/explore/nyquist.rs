@@ -73,7 +73,6 @@ impl Nyquist {
             let a = a.max(relay.hysteresis);
             (a, relay.inverse_describing_function(a))
         });
-        let ground = theme::behind_words(ui.visuals());
         let shown = plot.show(ui, |plot| {
             let [x, y] = bounds(view, plot.transform().frame().aspect_ratio());
             plot.set_plot_bounds_y(y);
@@ -115,12 +114,12 @@ impl Nyquist {
                 let text = msg!("S: margin φ = {}°", fixed(phi.to_degrees(), 1));
                 // Above it: below the line stands the amplitude.
                 let above = [at[0] - 0.08 * view, at[1] + NEAR * point];
-                plot.text(label("S", text, above, ground).anchor(egui::Align2::LEFT_BOTTOM));
+                plot.text(label("S", text, above).anchor(egui::Align2::LEFT_BOTTOM));
             }
             if let Some((a, at)) = marker {
                 plot.points(dot("a", at));
                 let text = format!("a = {a:.3}").into();
-                let below = label("a", text, [at[0], at[1] - NEAR * point], ground);
+                let below = label("a", text, [at[0], at[1] - NEAR * point]);
                 plot.text(below.anchor(egui::Align2::CENTER_TOP));
             }
         });
@@ -198,10 +197,8 @@ fn unit_circle() -> PlotPoints<'static> {
         .collect()
 }
 
-/// A label on a `ground` that lets it be read over curves.
-fn label(name: &'static str, text: Message, at: [f64; 2], ground: egui::Color32) -> Text {
+fn label(name: &'static str, text: Message, at: [f64; 2]) -> Text {
     let text = egui::RichText::new(tr(text)).size(15.0).strong();
-    let text = text.background_color(ground);
     Text::new(name, PlotPoint::new(at[0], at[1]), text)
 }
 

@@ -6,7 +6,6 @@ use hysteron_core::tuning::relay_gain;
 
 use super::cycle_table;
 use crate::language::{tr, tr_number};
-use crate::symbols;
 use crate::theme;
 use crate::widgets::equation::equation_ui;
 
@@ -17,10 +16,9 @@ pub fn predictions_ui(ui: &mut egui::Ui, input: &ExploreInput, data: &ExploreDat
     let predicted = data.describing().map(|i| i.cycle);
     let rows = [predicted, data.exact, data.simulated].map(row);
     cycle_table::ui(ui, ["period [s]", "amplitude", "Ku"], 7.0, &rows);
-    let note = "Amplitude a: half of peak to peak. Ku = 4k/(πa), eq. (9). Below each: difference from the exact value.";
-    ui.label(symbols::small(ui, &tr(note)));
+    ui.small(tr("Amplitude a: half of peak to peak. Ku = 4k/(πa), eq. (9). Below each: difference from the exact value."));
     if let Some(ultimate) = &data.ultimate {
-        ui.label(symbols::body(ui, &tr(&ultimate.text)));
+        ui.label(tr(&ultimate.text));
     }
 }
 

@@ -130,14 +130,6 @@ impl Maps {
         };
         let (from, to) = (number(*least), with_unit(*most, self.quantity.unit()));
         let range = match self.quantity {
-            Quantity::Period if self.map.grows_to_silence(self.quantity) => {
-                return msg!(
-                    "Period from {} to more than {}: it grows towards the {} % of these loops that do not oscillate.",
-                    from,
-                    to,
-                    fixed(100.0 * silent, 0)
-                );
-            }
             Quantity::Period => msg!("Period from {} to {}.", from, to),
             Quantity::Amplitude => msg!("Amplitude a from {} to {}.", from, to),
             Quantity::UltimateGain => msg!("Ultimate gain Ku from {} to {}.", from, to),

@@ -8,7 +8,6 @@ use super::Maps;
 use super::words::{axis_title, stability, with_unit};
 use crate::command::Command;
 use crate::language::tr;
-use crate::symbols;
 use crate::widgets::controls::reset_asked;
 use crate::widgets::typed::{DECIMALS, Typed};
 
@@ -40,9 +39,7 @@ impl Maps {
             self.point = self.point.map(|[x, y]| [y, x]);
         }
         ui.add_space(4.0);
-        let note = "Everything else is as set in Explore. Amplitude: half of peak to peak. Ku = 4k/(πa), with the \
-            exact amplitude a.";
-        ui.label(symbols::small(ui, &tr(note)));
+        ui.small(tr("Everything else is as set in Explore. Amplitude: half of peak to peak. Ku = 4k/(πa), with the exact amplitude a."));
     }
 
     /// Every quantity at the chosen point.
@@ -76,7 +73,7 @@ impl Maps {
                             (Quantity::Stability, Some(v)) => stability(v).into(),
                             (_, Some(v)) => with_unit(v, quantity.unit()).into(),
                         };
-                        ui.label(symbols::body(ui, &tr(quantity.label())));
+                        ui.label(tr(quantity.label()));
                         ui.label(tr(text));
                         ui.end_row();
                     }

@@ -69,10 +69,6 @@ fn handy(unit: &'static str) -> (f64, &'static str) {
     }
 }
 
-/// How many mysteries hide how much.
-const SHARES: &str = "One mystery in five hides nothing, half hide one effect, and the rest two of different kinds, \
-    anywhere from small to large.";
-
 impl Bench {
     pub(super) fn choices_ui(&mut self, ui: &mut Ui, desk: &mut Desk) {
         ui.heading(tr("1. What is measured, and how?"));
@@ -108,7 +104,6 @@ impl Bench {
             self.menu_ui(ui, desk);
         } else {
             ui.label(tr(self.surprise()));
-            ui.label(tr(SHARES));
         }
     }
 
@@ -129,8 +124,11 @@ impl Bench {
     fn surprise(&self) -> Message {
         let shown = |h: &&Hideable| h.shown_by.contains(&self.experiment);
         let names = self.menu().iter().filter(shown).map(Hideable::name);
-        // A list of names, each of which begins as in the menu, and no sentence.
-        msg!("It may hide: {}", Message::list(" · ", names))
+        msg!(
+            "It may hide: {}. One mystery in five hides nothing, half hide one effect, and the rest two of different \
+             kinds, anywhere from small to large.",
+            Message::list(", ", names)
+        )
     }
 
     /// The menu of effects; those that this experiment shows stand first.

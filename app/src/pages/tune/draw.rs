@@ -6,7 +6,6 @@ use hysteron_core::tuning::{Pid, RelayTest};
 use hysteron_core::uncertain::digits;
 
 use crate::language::tr;
-use crate::symbols;
 use crate::theme;
 use crate::widgets::chart::{Chart, Shape, caption_ui};
 
@@ -45,10 +44,6 @@ pub fn controller(pid: &Pid) -> String {
 
 /// Height of the caption of a plot, points.
 pub const CAPTION: f32 = 26.0;
-
-/// The output of a loop, and what it answers.
-pub const SET_POINT_STEP: &str = "output y, set-point step";
-pub const LOAD_STEP: &str = "output y, load step";
 
 /// An empty plot with named axes; the wheel scrolls the page.
 pub fn plot<'a>(id: &str, height: f32, x: &'static str, y: impl Into<Message>) -> Chart<'a> {
@@ -163,7 +158,7 @@ pub fn set_table(
             .spacing([if tight { 6.0 } else { 14.0 }, 4.0])
             .show(ui, |ui| {
                 for head in heads {
-                    let head = egui::Label::new(symbols::strong(ui, &tr(*head)));
+                    let head = egui::Label::new(egui::RichText::new(tr(*head)).strong());
                     cell(ui, tight.then_some(HEAD), head);
                 }
                 ui.end_row();

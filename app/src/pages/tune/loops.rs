@@ -8,13 +8,11 @@ use hysteron_core::tuning::{LoopReport, Response, TuningReport};
 use hysteron_core::uncertain::significant;
 
 use super::draw::{
-    AFTER, BEFORE, CAPTION, LOAD_STEP, SET_POINT_STEP, beside, controller, curve, maybe, number,
-    plot, series, table,
+    AFTER, BEFORE, CAPTION, beside, controller, curve, maybe, number, plot, series, table,
 };
 use super::stage::{Seen, Stage};
 use crate::export::Table;
 use crate::language::tr;
-use crate::symbols;
 use crate::theme;
 use crate::widgets::chart::{Key, Shape, caption_ui, sparse};
 
@@ -27,16 +25,6 @@ pub const STAGE: Stage = Stage {
     plot: step_ui,
     ui,
 };
-
-/// Time that responses are shown, in times that the slowest takes to settle.
-const SETTLED: f64 = 1.4;
-
-/// Distance from the origin within which all of the loops' Nyquist curves is in view at first: with integral action
-/// they come from infinity.
-const NEAR: f64 = 1.5;
-
-/// Room above and below them, as a share of their height.
-const ROOM: f64 = 0.05;
 
 fn answer(seen: Seen<'_>) -> Message {
     let report = seen.report;
@@ -65,12 +53,11 @@ fn answer(seen: Seen<'_>) -> Message {
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
     let report = seen.report;
     let after = report.after.as_ref().ok();
-    let controllers = tr(msg!(
+    ui.label(tr(msg!(
         "Before: {}. After: {}.",
         controller(&report.before.pid),
         after.map_or_else(|| "none".into(), |a| Message::from(controller(&a.pid)))
-    ));
-    ui.label(symbols::body(ui, &controllers));
+    )));
     let half = (0.5 * height - 16.0).max(200.0);
     beside(
         ui,
@@ -81,7 +68,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
             }
         },
         |ui, height| {
-            let name = ["load response", LOAD_STEP];
+            let name = ["load response", "output y, load 1"];
             response_ui(ui, name, &report.before, after, |l| &l.load, height);
         },
     );
@@ -95,7 +82,7 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32, _rule: &mut String) {
 
 /// The response to a step of the set point, before and after.
 pub fn step_ui(ui: &mut egui::Ui, seen: Seen<'_>, height: f32) {
-    let name = ["step response", SET_POINT_STEP];
+    let name = ["step response", "output y, set point 1"];
     let after = seen.report.after.as_ref().ok();
     let before = &seen.report.before;
     response_ui(ui, name, before, after, |l| &l.set_point, height);
@@ -128,23 +115,6 @@ pub fn tables(report: &TuningReport) -> Vec<Table> {
     TABLES.into_iter().zip(responses).map(table).collect()
 }
 
-/// Time that is shown at first, s: until all responses of the stable loops have settled, and a little longer; all of it
-/// where one has not settled.
-fn shown_until(before: &LoopReport, after: Option<&LoopReport>) -> f64 {
-    let whole = before.set_point.time.last().copied().unwrap_or(1.0);
-    let stable = [Some(before), after].into_iter().flatten();
-    let stable = stable.filter(|l| l.margins.is_some());
-    let responses = stable.flat_map(|l| [&l.set_point, &l.load]);
-    let settled = responses
-        .map(|r| r.settling_time.unwrap_or(whole))
-        .fold(0.0, f64::max);
-    if settled > 0.0 {
-        whole.min(SETTLED * settled)
-    } else {
-        whole
-    }
-}
-
 fn response_ui(
     ui: &mut egui::Ui,
     [id, axis]: [&'static str; 2],
@@ -162,7 +132,7 @@ fn response_ui(
         .map(|l| part(l).peak)
         .fold(0.0, f64::max);
     let top = if top > 0.0 { 1.1 * top } else { 2.0 };
-    let end = shown_until(before, after);
+    let end = part(before).time.last().copied().unwrap_or(1.0);
     let bottom = if before.margins.is_some() { -0.1 } else { -0.5 } * top;
     let curves = curves(after.is_some());
     caption_ui(ui, "", &curves);
@@ -201,31 +171,11 @@ fn curves(tuned: bool) -> Vec<Key> {
     curves
 }
 
-/// What of the plane is seen at first, in a plot of this ratio of width to height: the curves near the origin and -1,
-/// and as much beside them as there is room for.
-fn nyquist_view(curves: impl Iterator<Item = [f64; 2]>, aspect: f64) -> [[f64; 2]; 2] {
-    let near = curves.filter(|p| p[0].hypot(p[1]) <= NEAR);
-    // -1 with room for its mark, and the origin.
-    let least: [[f64; 2]; 2] = [[-1.2, 0.2], [-0.2, 0.2]];
-    let [x, y] = near.fold(least, |view, p| {
-        [0, 1].map(|i| [view[i][0].min(p[i]), view[i][1].max(p[i])])
-    });
-    let margin = ROOM * (y[1] - y[0]);
-    let y = [y[0] - margin, y[1] + margin];
-    let width = (y[1] - y[0]) * aspect;
-    let beside = (0.5 * (width - (x[1] - x[0]))).max(0.0);
-    [[x[0] - beside, x[1] + beside], y]
-}
-
 fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, height: f32) {
     let mut curves = curves(after.is_some());
     curves.push(("unit circle", theme::NOISE, Shape::Dashes));
     curves.push(("-1", theme::MODEL, Shape::Cross));
     caption_ui(ui, "", &curves);
-    let drawn = [Some(before), after].into_iter().flatten();
-    let drawn = drawn.flat_map(|l| l.nyquist.iter().copied());
-    let aspect = f64::from(ui.available_width() / (height - CAPTION).max(1.0));
-    let [x, y] = nyquist_view(drawn, aspect);
     plot(
         "loop nyquist",
         height - CAPTION,
@@ -234,8 +184,8 @@ fn nyquist_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>
     )
     .with(|plot| {
         plot.data_aspect(1.0)
-            .default_x_bounds(x[0], x[1])
-            .default_y_bounds(y[0], y[1])
+            .default_x_bounds(-2.2, 0.8)
+            .default_y_bounds(-1.6, 0.6)
     })
     .show(ui, |plot| {
         let circle: Vec<[f64; 2]> = (0..=120)
@@ -274,7 +224,7 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
     let [before_color, after_color] = [BEFORE, AFTER].map(|c| theme::readable(ui, c));
     table(ui, "loops", &["", "before", "after"], |ui| {
         let mut row = |name: &'static str, value: &dyn Fn(&LoopReport) -> Message| {
-            ui.label(symbols::body(ui, &tr(name)));
+            ui.label(tr(name));
             ui.colored_label(before_color, tr(value(before)));
             ui.colored_label(after_color, tr(after.map_or_else(Message::default, value)));
             ui.end_row();
@@ -313,7 +263,7 @@ fn table_ui(ui: &mut egui::Ui, before: &LoopReport, after: Option<&LoopReport>, 
         row("load peak", &|l| stable(l, number(l.load.peak)));
     });
     ui.small(tr(msg!(
-        "Load error: integral of |y| over {} s. Without integral action it grows with the time.",
+        "Load error: integral of |y| over the {} s shown. Without integral action it grows with the time.",
         number(horizon)
     )));
 }

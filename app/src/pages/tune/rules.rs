@@ -8,7 +8,6 @@ use super::draw::{cell, controller, maybe, number, set_table};
 use super::loops;
 use super::stage::{Seen, Stage};
 use crate::language::{tr, tr_number};
-use crate::symbols;
 
 /// Room below which the table is set tight, and the width of the names of rules then, points.
 const ROOMY: f32 = 880.0;
@@ -33,9 +32,9 @@ fn answer(seen: Seen<'_>) -> Message {
 }
 
 fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
-    let note = "The same experiment, different aims: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is \
-        risky) with how well a load is rejected. Click a rule to take it.";
-    ui.label(symbols::body(ui, &tr(note)));
+    ui.label(tr(
+        "The same experiment, different wishes: compare robustness (Ms: 1.4 is calm, 2 is lively, beyond that is \
+         risky) with how well a load is rejected. Click a rule to take it."));
     let heads = [
         "rule",
         "K",
@@ -68,12 +67,9 @@ fn ui(ui: &mut egui::Ui, seen: Seen<'_>, _height: f32, chosen: &mut String) {
             ui.end_row();
         }
     });
-    let note = tr(msg!(
+    ui.small(tr(msg!(
         "Ms: maximum sensitivity, 1/Ms is the least distance of the loop's Nyquist curve from -1. Load error: \
-         integral of |y| over {} s after a step of 1 at the plant's input.",
-        number(seen.report.horizon)
-    ));
-    ui.label(symbols::small(ui, &note));
+         integral of |y| over {} s after a step of 1 at the plant's input.", number(seen.report.horizon))));
     for report in &seen.report.rules {
         if let (Ok(rule), Err(error)) = (rule(&report.rule), &report.outcome) {
             ui.small(format!("{}: {}.", tr(rule.name), tr(Message::from(error))));

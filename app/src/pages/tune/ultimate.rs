@@ -10,7 +10,6 @@ use hysteron_core::uncertain::significant;
 use super::draw::{CAPTION, beside, curve, error, maybe, number, plot, table};
 use super::stage::{Seen, Stage};
 use crate::language::tr;
-use crate::symbols;
 use crate::theme;
 use crate::widgets::chart::{Shape, caption_ui};
 
@@ -155,11 +154,10 @@ fn table_ui(ui: &mut egui::Ui, seen: Seen<'_>) {
         );
         row("true", found.truth, None, None);
     });
-    let note = tr(msg!(
+    ui.small(tr(msg!(
         "Convention here: {}. A program that counts differently reports half or twice this Ku.",
         Message::words(found.amplitude_convention.clone())
-    ));
-    ui.label(symbols::small(ui, &note));
+    )));
     ui.add_space(6.0);
     let point = &seen.report.point;
     ui.label(tr(msg!(

@@ -5,7 +5,7 @@ use hysteron_core::msg;
 use hysteron_core::tuning::Response;
 use hysteron_core::tuning::measured::TunedGains;
 
-use super::super::draw::{AFTER, BEFORE, CAPTION, LOAD_STEP, SET_POINT_STEP, beside, plot, series};
+use super::super::draw::{AFTER, BEFORE, CAPTION, beside, plot, series};
 use crate::language::tr;
 use crate::widgets::chart::{Shape, caption_ui};
 
@@ -33,14 +33,20 @@ pub fn ui(
         |ui, height| {
             response_ui(
                 ui,
-                ["measured step", SET_POINT_STEP],
+                ["measured step", "output y, set point 1"],
                 set_point,
                 stepped.as_deref(),
                 height,
             );
         },
         |ui, height| {
-            response_ui(ui, ["measured load", LOAD_STEP], load, without, height);
+            response_ui(
+                ui,
+                ["measured load", "output y, load 1"],
+                load,
+                without,
+                height,
+            );
         },
     );
 }

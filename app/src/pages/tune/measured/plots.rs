@@ -51,7 +51,6 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
     let reach = tuning
         .point
         .map_or_else(|| largest(&report.nyquist), |p| REACH * p.magnitude);
-    let ground = theme::behind_words(ui.visuals());
     // As wide as it is high needs it, the origin to the right.
     let wide = 1.3 * reach * f64::from(ui.available_width() / (height - CAPTION).max(1.0));
     chart
@@ -85,12 +84,14 @@ pub fn nyquist_ui(ui: &mut egui::Ui, report: &MeasuredReport, height: f32) {
                     );
                 }
                 let [x, y] = polar(1.5 * ARC * point.magnitude, 0.5 * point.phase_deg);
-                let angle = egui::RichText::new(format!("{:.0}°", point.phase_deg));
-                let angle = angle.background_color(ground);
                 plot.text(
-                    Text::new(tr("phase"), PlotPoint::new(x, y), angle)
-                        .color(theme::MEASURED)
-                        .allow_hover(false),
+                    Text::new(
+                        tr("phase"),
+                        PlotPoint::new(x, y),
+                        format!("{:.0}°", point.phase_deg),
+                    )
+                    .color(theme::MEASURED)
+                    .allow_hover(false),
                 );
                 plot.points(
                     Points::new(tr("measured point"), curve(&[[value.re, value.im]]))
