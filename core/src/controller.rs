@@ -132,7 +132,7 @@ pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
         kind,
         explained: law.explained,
         gain: law.gains[0],
-        is_led: follows(logged.input, &terms, &switched, 0)
+        is_led: follows(logged.input, &terms, &between_limits(logged), 0)
             .is_none_or(|one| one.explained < CONTROLLED),
     })
 }

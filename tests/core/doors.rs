@@ -519,11 +519,15 @@ fn a_cell_that_is_no_number_is_said_where_it_stands() {
 fn a_text_in_utf_16_is_read() {
     let cell = |k: usize| format!("{k};{};{}", u8::from(on(k)), warmth(k));
     let text = format!("time;Stellgröße [%];Temperatur [°C]\n{}", rows(40, cell));
-    let orders: [([u8; 2], fn(u16) -> [u8; 2]); 2] = [
-        ([0xff, 0xfe], u16::to_le_bytes),
-        ([0xfe, 0xff], u16::to_be_bytes),
-    ];
-    for (mark, order) in orders {
+    for low_first in [true, false] {
+        let order = |unit: u16| {
+            if low_first {
+                unit.to_le_bytes()
+            } else {
+                unit.to_be_bytes()
+            }
+        };
+        let mark = order(0xfeff);
         let units: Vec<u8> = text.encode_utf16().flat_map(order).collect();
         let file = [&mark[..], &units].concat();
         let read = import("x.csv", &file, &ImportOptions::default());

