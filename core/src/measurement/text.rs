@@ -47,19 +47,21 @@ pub(super) fn table_of_scenario(bytes: &[u8]) -> Option<&'static str> {
     TABLES_OF_SCENARIO.into_iter().find(|table| *table == name)
 }
 
-/// The bytes of a file in UTF-8: a text in UTF-16 says so with its first two.
+/// The bytes of a file in UTF-8: a text in UTF-16 says so with its first two, and has an even number of them.
 pub(super) fn in_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     let (units, low_first) = match bytes {
         [0xff, 0xfe, units @ ..] => (units, true),
         [0xfe, 0xff, units @ ..] => (units, false),
         _ => return Cow::Borrowed(bytes),
     };
-    let units = units.chunks_exact(2).map(|pair| {
-        let pair = [pair[0], pair[1]];
+    let (pairs, []) = units.as_chunks() else {
+        return Cow::Borrowed(bytes);
+    };
+    let units = pairs.iter().map(|pair| {
         if low_first {
-            u16::from_le_bytes(pair)
+            u16::from_le_bytes(*pair)
         } else {
-            u16::from_be_bytes(pair)
+            u16::from_be_bytes(*pair)
         }
     });
     let text: Result<String, _> = char::decode_utf16(units).collect();
