@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use crate::least_squares::least_squares;
+use crate::least_squares::{least_squares, take_off};
 use crate::measurement::Kind;
 use crate::order::{distinct, range};
 use crate::sums::dot;
@@ -82,7 +82,8 @@ struct Term {
 /// The controller that made the input, if one did. Where the input is at its limits it follows nothing, and what an
 /// integral holds afterwards is not known: each stretch between them has an offset of its own.
 pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
-    let switched = without_jumps(logged.input, &[], between_limits(logged));
+    let between = between_limits(logged);
+    let switched = without_jumps(logged.input, &[], between.clone());
     let free = switched.iter().flat_map(|s| &logged.input[s.clone()]);
     if distinct(free.copied().collect()).len() <= FEW_LEVELS {
         return None;
@@ -132,7 +133,7 @@ pub fn controller(logged: &Logged<'_>) -> Option<Controller> {
         kind,
         explained: law.explained,
         gain: law.gains[0],
-        is_led: follows(logged.input, &terms, &between_limits(logged), 0)
+        is_led: follows(logged.input, &terms, &between, 0)
             .is_none_or(|one| one.explained < CONTROLLED),
     })
 }
@@ -364,13 +365,4 @@ fn regressed(target: &[f64], columns: &[Vec<f64>]) -> Option<Law> {
         explained: 1.0 - left / squares,
         left,
     })
-}
-
-fn take_off(values: &mut [f64], columns: &[Vec<f64>], gains: &[f64]) {
-    for (gain, column) in gains.iter().zip(columns) {
-        values
-            .iter_mut()
-            .zip(column)
-            .for_each(|(r, v)| *r -= gain * v);
-    }
 }

@@ -44,11 +44,16 @@ pub fn least_squares(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let mut x = solved(right);
     // Once more on what is left, which takes off most of the round-off of the normal equations.
     let mut rest = right.to_vec();
-    for (c, column) in x.iter().zip(columns) {
-        rest.iter_mut().zip(column).for_each(|(r, v)| *r -= c * v);
-    }
+    take_off(&mut rest, columns, &x);
     x.iter_mut().zip(solved(&rest)).for_each(|(a, b)| *a += b);
     x.iter().all(|v| v.is_finite()).then_some(x)
+}
+
+/// Takes columns with these coefficients off values.
+pub fn take_off(values: &mut [f64], columns: &[Vec<f64>], coefficients: &[f64]) {
+    for (c, column) in coefficients.iter().zip(columns) {
+        values.iter_mut().zip(column).for_each(|(r, v)| *r -= c * v);
+    }
 }
 
 /// Inverse of the matrix of the columns' products: the covariance of the coefficients by unit variance.

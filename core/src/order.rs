@@ -26,6 +26,9 @@ pub fn drop_marked<T>(values: &mut Vec<T>, marked: &[bool]) {
     values.retain(|_| !marks.next().copied().unwrap_or(false));
 }
 
+/// Median of the absolute value of a standard normal variable.
+pub const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
+
 /// Median; the order of the values is lost. 0 without values.
 pub fn median(values: &mut [f64]) -> f64 {
     quantile(values, 0.5)

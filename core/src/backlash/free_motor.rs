@@ -6,7 +6,7 @@ use super::cycles::Cycles;
 use super::drift::Drift;
 use super::record::{DIFFERENCE, Record};
 use super::switches::Switches;
-use crate::order::{median, quantile, range};
+use crate::order::{NORMAL_MEDIAN, median, quantile, range};
 
 /// How late the input may act, s; delay and lag of the drive lie within.
 const LATE: f64 = 2e-3;
@@ -245,9 +245,6 @@ impl Rows {
         })
     }
 }
-
-/// Median of the absolute value of a standard normal variable.
-pub(super) const NORMAL_MEDIAN: f64 = 0.674_489_750_196_081_7;
 
 /// Mean of the sign of a velocity that goes from `a` to `b` on a straight line.
 fn mean_sign(a: f64, b: f64) -> f64 {

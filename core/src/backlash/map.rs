@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::measurement::{Measurement, Quantity};
 use crate::message::{Message, says};
 use crate::msg;
-use crate::order::{median, range};
-
-use super::free_motor::NORMAL_MEDIAN;
+use crate::order::{NORMAL_MEDIAN, median, range};
 
 /// Fewest samples of a branch.
 const FEWEST: usize = 50;

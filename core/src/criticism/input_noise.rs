@@ -3,16 +3,13 @@
 //! That of a sensor does not; what a controller makes of a noisy output does. The record tells: the body follows what
 //! acts.
 
-use super::explain::begun;
+use super::explain::{LEAST_FALL, begun};
 use super::record::levelled;
 use super::screen::Screened;
 use super::session::Session;
 use crate::diagnosis::CriticismError;
 use crate::measurement::Measurement;
 use crate::user_model::UserModel;
-
-/// Relative fall of what the baseline leaves from which on an input without its noise is the better one.
-const LEAST_FALL: f64 = 0.03;
 
 /// A session and the record as it was screened; without the noise of its input where that is better explained.
 pub(super) fn prepared(

@@ -124,10 +124,9 @@ impl OneWay {
     pub fn is_pushed_alike(&self) -> bool {
         let mut inputs: Vec<f64> = self.moving.iter().map(|m| m[0]).collect();
         let usual = quantile(&mut inputs, 0.5);
-        let same = inputs
+        inputs
             .iter()
-            .filter(|u| (*u - usual).abs() <= SAME * usual.abs());
-        same.count() == inputs.len()
+            .all(|u| (u - usual).abs() <= SAME * usual.abs())
     }
 
     /// Whether it rests somewhere where a load of this size would have turned it back: what holds it there is friction.

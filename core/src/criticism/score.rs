@@ -8,7 +8,7 @@ use super::fit::{Fit, residuals};
 use super::motion::Motion;
 use super::noise::{news, news_left};
 use super::output::Output;
-use super::window::bend_between;
+use super::window::bend_within;
 
 /// How well a motion fits: on the fitted and on the held-back part.
 #[derive(Clone, Debug)]
@@ -106,7 +106,8 @@ pub(super) fn motion_square(data: &Data, gain: f64, is_one: impl Fn(&Block) -> b
     let blocks = || data.blocks.iter().filter(|b| is_one(b));
     let motion = |o: &Output| -> f64 {
         if !o.is_velocity {
-            return blocks().map(|b| bend_between(o, b.from, b.to)).sum();
+            let windows = blocks().map(|b| &o.values[b.from..b.to]);
+            return windows.map(|window| bend_within(o, window)).sum();
         }
         let told = || blocks().flat_map(|b| (b.from..b.to).filter(|i| o.tells(*i)));
         let count = told().count().max(1) as f64;

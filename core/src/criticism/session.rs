@@ -514,7 +514,7 @@ impl Session {
         let (data, fit) = (self.whole(), &scored.fit);
         let error = scored.score.error;
         let levels = self.levelled.as_ref().map_or(0.0, |l| l.unknown);
-        let by_input = left_by_input(data, levels, &fit.structure.model(&fit.values));
+        let by_input = || left_by_input(data, levels, &fit.structure.model(&fit.values));
         let probe = || self.probe_of(data, fit);
         is_left_by_random_forces(data, &fit.motion, error, by_input, probe)
     }

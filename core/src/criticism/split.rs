@@ -13,7 +13,7 @@ use super::data::Data;
 use super::fit::Fit;
 use super::knowledge::Knowledge;
 use super::structure::Structure;
-use super::window::bend_between;
+use super::window::bend_within;
 use crate::effect::Scales;
 use crate::measurement::Kind;
 
@@ -119,7 +119,9 @@ fn left(data: &Data, fit: &Fit) -> Vec<f64> {
 fn bends(data: &Data) -> Vec<f64> {
     let bend = |b: &Block| {
         let outputs = data.outputs.iter();
-        outputs.map(|o| bend_between(o, b.from, b.to)).sum::<f64>()
+        outputs
+            .map(|o| bend_within(o, &o.values[b.from..b.to]))
+            .sum::<f64>()
     };
     let beyond = data
         .blocks

@@ -28,7 +28,8 @@ pub(super) fn drive_window(outputs: &[Output], longest: usize) -> usize {
 /// and of a position without its slope.
 fn bend(output: &Output, length: usize) -> f64 {
     let windows = output.values.len() / length;
-    let squares = (0..windows).map(|k| bend_between(output, k * length, (k + 1) * length));
+    let squares = output.values.chunks_exact(length);
+    let squares = squares.map(|window| bend_within(output, window));
     if windows > 0 {
         (squares.sum::<f64>() / (windows * length) as f64).sqrt()
     } else {
@@ -36,9 +37,8 @@ fn bend(output: &Output, length: usize) -> f64 {
     }
 }
 
-/// Sum of squares of the same between two samples, in noise units.
-pub(super) fn bend_between(output: &Output, from: usize, to: usize) -> f64 {
-    let window = &output.values[from..to];
+/// Sum of squares of the same in a window of what such an output shows, in its noise units.
+pub(super) fn bend_within(output: &Output, window: &[f64]) -> f64 {
     let n = window.len() as f64;
     let middle = (n - 1.0) / 2.0;
     // Sum of the squared distances from the middle.

@@ -12,7 +12,7 @@ use super::mapped::map;
 use super::mapping::ImportOptions;
 use super::period::Period;
 use super::rates;
-use super::resembling::{RESEMBLING, Resembling, is_period, resembles};
+use super::resembling::{RESEMBLING, is_period};
 use super::size::wrong_size;
 use super::split::split_row;
 use super::switched_on;
@@ -157,10 +157,8 @@ fn unread(row: Option<(usize, &str)>, mut dialect: Dialect, fields: &[Field]) ->
     let (line, row) = row?;
     let mut cells = Vec::with_capacity(fields.len());
     split_row(row, dialect.separator, &mut cells);
-    let wanted = |field: &Field| {
-        let resembles = |r: &Resembling| resembles(r.role, &field.name);
-        field.role.is_none() && RESEMBLING.iter().any(resembles)
-    };
+    let wanted =
+        |field: &Field| field.role.is_none() && RESEMBLING.iter().any(|r| r.resembles(&field.name));
     let mut all = fields.iter().zip(cells).enumerate();
     let (place, (field, cell)) = all.find(|(_, (field, cell))| {
         let value = dialect.mark.value(cell, &mut Clock::default());

@@ -238,7 +238,7 @@ impl Resembling {
     }
 
     /// Whether a name resembles its names.
-    fn resembles(&self, name: &str) -> bool {
+    pub fn resembles(&self, name: &str) -> bool {
         let lower = name.to_lowercase();
         let is_word = |word: &str| self.words.contains(&word.to_lowercase().as_str());
         self.parts.iter().any(|part| lower.contains(part)) || words(name).any(is_word)

@@ -32,6 +32,7 @@ use sketch::{Sketch, first_guess};
 pub(super) use swap::may_replace;
 use task::Task;
 pub(super) use trial::Trial;
+pub(super) use tuning::LEAST_FALL;
 use tuning::{FITTED, FITTED_HIDDEN};
 
 /// The model with these effects, to which others are added.
@@ -285,7 +286,7 @@ impl Explain {
             }
             Stage::TakeOut => self.swap(session, screened),
             Stage::Swap => self.judge_swaps(session),
-            Stage::Path => self.judge_path(session),
+            Stage::Path => self.stage = Stage::Done,
             Stage::Done => {}
         }
     }

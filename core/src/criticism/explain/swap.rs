@@ -209,19 +209,6 @@ impl Explain {
         parts.find(|part| self.does_as_well(session, *part, self.best))
     }
 
-    /// Ends where no model on the way to the best does as well; a fit from there may have led further than those before.
-    pub(super) fn judge_path(&mut self, session: &Session) {
-        let may_change = self.size(self.best) > 0 && self.swaps < MOST_SWAPS;
-        match may_change.then(|| self.as_good_a_part(session)).flatten() {
-            Some(smaller) => {
-                self.swaps += 1;
-                self.best = smaller;
-                self.open_swaps(session);
-            }
-            None => self.stage = Stage::Done,
-        }
-    }
-
     /// Takes what is better, or does as well with fewer values; else what is the same could stand in its place.
     pub(super) fn judge_swaps(&mut self, session: &mut Session) {
         self.best = self.best_of_its_kind(session);

@@ -101,7 +101,7 @@ pub(super) const QUANTILE: f64 = 2.39;
 pub(super) const RANKED: f64 = 7.0;
 
 /// Relative fall of the error below which a difference is none, whatever its sign is known to be.
-pub(super) const LEAST_FALL: f64 = 0.03;
+pub(in crate::criticism) const LEAST_FALL: f64 = 0.03;
 
 /// Relative difference of the error up to which two models are the same; and up to which they are where the blocks do
 /// not tell them apart.

@@ -6,8 +6,7 @@
 
 use super::level::noise_level;
 use crate::criticism::data::Data;
-use crate::criticism::output::Output;
-use crate::criticism::window::bend_between;
+use crate::criticism::window::bend_within;
 use crate::model::Model;
 use crate::random::dither;
 
@@ -34,13 +33,9 @@ pub(in crate::criticism) fn left_by_input(data: &Data, levels: f64, body: &Model
         } else {
             &position
         };
-        let pushed = Output {
-            values: values.clone(),
-            ..output.clone()
-        };
-        let spans = data.spans().into_iter();
-        spans
-            .map(|(from, to)| bend_between(&pushed, from, to))
+        let windows = data.spans().into_iter();
+        windows
+            .map(|(from, to)| bend_within(output, &values[from..to]))
             .sum::<f64>()
     });
     let count = data.outputs.len() * data.used();

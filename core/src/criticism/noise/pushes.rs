@@ -43,14 +43,14 @@ pub(in crate::criticism) fn is_left_by_random_forces(
     data: &Data,
     motion: &Motion,
     error: f64,
-    by_input: f64,
+    by_input: impl FnOnce() -> f64,
     probe: impl FnOnce() -> Probe,
 ) -> bool {
     if data.kind != Kind::Drive || data.used() != data.len() {
         return false;
     }
     let beyond = (error * error - 1.0).max(0.0).sqrt();
-    let expected = AS_BY_INPUT.contains(&(beyond / by_input.max(f64::MIN_POSITIVE)));
+    let expected = AS_BY_INPUT.contains(&(beyond / by_input().max(f64::MIN_POSITIVE)));
     (expected || error < MOST_PUSHED && grows_by_chance(data, motion))
         && !is_foretold(data, error, probe().halves())
 }

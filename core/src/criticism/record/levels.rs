@@ -3,8 +3,9 @@
 //! The noise of a sensor does not act, but a model that is given it takes it for the input; what clips it seems to be
 //! missing then. Between two jumps such an input is what its readings are on the average.
 
-use super::tuning::{JUMP_SIGMAS, LONG_LEVELS, MEDIAN, SCATTERS};
-use crate::order::quantile;
+use super::tuning::{JUMP_SIGMAS, LONG_LEVELS, SCATTERS};
+use crate::order::{NORMAL_MEDIAN, median};
+use crate::sums::deviation;
 
 /// An input on its levels.
 #[derive(Clone, Debug)]
@@ -65,9 +66,7 @@ pub(in crate::criticism) fn levelled(input: &[f64]) -> Option<Levelled> {
     let scatter = (squares.sum::<f64>() / input.len() as f64).sqrt();
     let alone = of_stretches.map(|(s, l)| (s.readings * s.readings) as f64 / l.readings as f64);
     // Else chance is the input, and no noise of it.
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let spread = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-    let is_input = spread > scatter * scatter * values.len() as f64;
+    let is_input = deviation(&values) > scatter;
     let fewest = levels.iter().map(|l| l.readings).min().unwrap_or(0);
     let is_noise = scatter > 0.0 && scatter < SCATTERS * noise;
     (is_noise && is_input).then(|| Levelled {
@@ -81,7 +80,7 @@ pub(in crate::criticism) fn levelled(input: &[f64]) -> Option<Levelled> {
 /// Standard deviation of white noise by what most readings differ from the next.
 fn noise_between_jumps(input: &[f64]) -> f64 {
     let mut steps: Vec<f64> = input.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
-    quantile(&mut steps, 0.5) / (std::f64::consts::SQRT_2 * MEDIAN)
+    median(&mut steps) / (std::f64::consts::SQRT_2 * NORMAL_MEDIAN)
 }
 
 /// For each stretch the level on which it is: that of all which differ by no more than chance lets them, if such are.

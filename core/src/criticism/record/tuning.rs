@@ -93,9 +93,6 @@ pub(super) const SECOND_DIFFERENCE: f64 = 2.45;
 /// Share of the largest value of a channel that arithmetic and print leave open: nine digits.
 pub(in crate::criticism) const ARITHMETIC: f64 = 1e-9;
 
-/// Median of the size of a normal number in its standard deviations.
-pub(super) const MEDIAN: f64 = 0.674_489_750_196_081_7;
-
 /// Standard deviations of its noise by which an input jumps: by chance one reading in two million is so far off.
 pub(super) const JUMP_SIGMAS: f64 = 5.0;
 
